@@ -1,0 +1,11 @@
+//! The action `lambda_h` of section 4.1, and the certificate that ties it to the displacements.
+
+mod certificate;
+mod recovery;
+mod residuals;
+mod solution;
+
+pub use certificate::{Reason, Rejected, certify};
+pub use recovery::Action;
+pub use residuals::{Residual, Residuals};
+pub use solution::ContactSolution;

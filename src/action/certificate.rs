@@ -1,0 +1,66 @@
+//! The only way to a solution.
+
+use thiserror::Error;
+
+use super::{Action, ContactSolution, Residuals};
+use crate::discretization::Discretization;
+use crate::solver::{Candidate, Statistics};
+
+/// Checks a candidate against `K`, `F`, `g` and hands it out as a solution when every residual, beyond what rounding of
+/// the terms explains, is at most `tolerance`.
+///
+/// # Errors
+/// [`Rejected`], with all residuals, when one is larger or not a number, or when a vector has the wrong length.
+pub fn certify(
+    d: &Discretization,
+    candidate: Candidate,
+    tolerance: f64,
+) -> Result<ContactSolution, Box<Rejected>> {
+    let Candidate { displacement, multiplier, statistics } = candidate;
+    let lengths_fit = displacement.iter().all(|u| u.len() == d.mesh().points().len())
+        && multiplier.len() == d.interior().len();
+    if !lengths_fit {
+        return Err(Box::new(Rejected { reason: Reason::Lengths, residuals: None, statistics }));
+    }
+    let action = Action::recover(d, &displacement);
+    let residuals = Residuals::new(d, &displacement, &multiplier, &action);
+    let worst =
+        residuals.named().into_iter().max_by(|p, q| p.1.beyond_rounding.total_cmp(&q.1.beyond_rounding));
+    match worst {
+        Some((check, residual)) if !(residual.beyond_rounding <= tolerance) => {
+            let reason = Reason::Residual { check, value: residual.value, tolerance };
+            Err(Box::new(Rejected { reason, residuals: Some(residuals), statistics }))
+        }
+        _ => Ok(ContactSolution::new(d, displacement, &action, residuals, statistics)),
+    }
+}
+
+/// A candidate that is not a solution.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[error("{} does not certify: {reason}", statistics.solver)]
+pub struct Rejected {
+    /// What is wrong.
+    pub reason: Reason,
+    /// All residuals; `None` when the vectors have the wrong lengths.
+    pub residuals: Option<Residuals>,
+    /// How the candidate was found.
+    pub statistics: Statistics,
+}
+
+/// Why a candidate is rejected.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum Reason {
+    /// A residual is too large.
+    #[error("{check} {value:.1e} is above the tolerance {tolerance:.1e}")]
+    Residual {
+        /// The worst check.
+        check: &'static str,
+        /// Its residual.
+        value: f64,
+        /// What is allowed.
+        tolerance: f64,
+    },
+    /// The vectors do not belong to the discretization.
+    #[error("its vectors do not have one entry for each vertex and each unknown")]
+    Lengths,
+}

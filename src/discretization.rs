@@ -1,0 +1,244 @@
+//! A problem on a mesh: everything that the discrete problem (3.4) is made of.
+
+use sprs::CsMat;
+use thiserror::Error;
+
+use crate::fem::{NotFinite, load_around, stiffness_around};
+use crate::mesh::{Mesh, VertexKind, VertexTriangles};
+use crate::problem::ContactProblem;
+
+/// The data of (3.4) on a mesh: `K`, `F_i`, `g_h`, the numbering of the unknowns, `|D_a|`.
+///
+/// Vectors over *vertices* have an entry for each vertex of the mesh; vectors over *unknowns* have one for each
+/// interior vertex, in the order of [`interior`](Self::interior).
+#[derive(Debug, Clone)]
+pub struct Discretization<'m> {
+    pub(crate) mesh: &'m Mesh,
+    pub(crate) tension: [f64; 2],
+    pub(crate) stiffness: CsMat<f64>,
+    pub(crate) interior_stiffness: CsMat<f64>,
+    pub(crate) load: [Vec<f64>; 2],
+    pub(crate) height: Vec<f64>,
+    pub(crate) interior: Vec<usize>,
+    pub(crate) dual_area: Vec<f64>,
+    scales: Scales,
+}
+
+/// The sizes that the data give to the unknowns: residuals are measured against them, so that a tolerance means the
+/// same on every mesh and in every unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scales {
+    /// A bound of the displacements' size: `max g + max_i max|f_i| d^2 / (8 mu_i)`, the deflection of a strip of the
+    /// width `d` of the domain. Unit: length.
+    pub displacement: f64,
+    /// The size of the loads as force per area: `max_i max_a |F_i,a| / |D_a|`, or what a varying height exerts,
+    /// `8 mu1 (max g - min g) / d^2`, if that is more.
+    pub force_density: f64,
+    /// The largest dual cell, `max_a |D_a|`. Unit: area.
+    pub dual_area: f64,
+}
+
+impl<'m> Discretization<'m> {
+    /// Assembles the discrete problem. Linear time and memory.
+    ///
+    /// # Errors
+    /// [`DiscretizationError`] when a load is not finite at a quadrature point, or the height is negative or not finite
+    /// at a boundary vertex.
+    pub fn new(problem: &ContactProblem, mesh: &'m Mesh) -> Result<Self, DiscretizationError> {
+        let around = VertexTriangles::new(mesh.points().len(), mesh.triangles());
+        let load_of = |i: usize| {
+            load_around(mesh, &around, &problem.load()[i])
+                .map_err(|source| DiscretizationError::Load { membrane: i + 1, source })
+        };
+        let load = [load_of(0)?, load_of(1)?];
+        let height = boundary_height(problem, mesh)?;
+        let stiffness = stiffness_around(mesh, &around);
+        // |D_a| = |Delta_a| / 3 (4.17)
+        let dual_area = (0..mesh.points().len())
+            .map(|a| around.of(a).iter().map(|&t| mesh.triangle_area(t)).sum::<f64>() / 3.0)
+            .collect::<Vec<f64>>();
+        let vertices = || 0..mesh.points().len();
+        let interior: Vec<usize> = vertices().filter(|&a| mesh.kind()[a] == VertexKind::Interior).collect();
+        let scales = Scales::new(mesh, problem.tension(), &load, &height, &dual_area);
+        if !(scales.displacement.is_finite() && scales.force_density.is_finite()) {
+            return Err(DiscretizationError::Overflow);
+        }
+        Ok(Self {
+            mesh,
+            tension: problem.tension(),
+            interior_stiffness: principal_submatrix(&stiffness, &interior),
+            stiffness,
+            load,
+            height,
+            interior,
+            dual_area,
+            scales,
+        })
+    }
+
+    /// The mesh.
+    pub fn mesh(&self) -> &'m Mesh {
+        self.mesh
+    }
+
+    /// `[mu1, mu2]`.
+    pub fn tension(&self) -> [f64; 2] {
+        self.tension
+    }
+
+    /// `K`, the stiffness matrix with unit coefficient on all vertices, rows compressed, symmetric.
+    pub fn stiffness(&self) -> &CsMat<f64> {
+        &self.stiffness
+    }
+
+    /// `K_II`, its part on the unknowns: positive definite.
+    pub fn interior_stiffness(&self) -> &CsMat<f64> {
+        &self.interior_stiffness
+    }
+
+    /// `[F_1, F_2]`, the load vectors over vertices. Unit: force.
+    pub fn load(&self) -> &[Vec<f64>; 2] {
+        &self.load
+    }
+
+    /// `g_h` (3.2) over vertices: `g` at the boundary vertices, zero elsewhere.
+    pub fn height(&self) -> &[f64] {
+        &self.height
+    }
+
+    /// The interior vertices `V_h`: unknown `k` belongs to vertex `interior[k]`.
+    pub fn interior(&self) -> &[usize] {
+        &self.interior
+    }
+
+    /// `|D_a| = |Delta_a| / 3`, the areas of the dual cells over vertices; zero at unused ones.
+    pub fn dual_area(&self) -> &[f64] {
+        &self.dual_area
+    }
+
+    /// The sizes that residuals are measured against.
+    pub fn scales(&self) -> Scales {
+        self.scales
+    }
+
+    /// `mu_i K u_i - F_i` for membrane `i` (0 or 1) at the unknowns, for displacements `u` over vertices. Unit: force.
+    pub fn imbalance(&self, i: usize, u: &[f64]) -> Vec<f64> {
+        let row = |&a: &usize| self.tension[i] * self.stiffness_row(a, |b| u[b]) - self.load[i][a];
+        self.interior.iter().map(row).collect()
+    }
+
+    /// The size of the terms that cancel in [`imbalance`](Self::imbalance): `mu_i |K| |u_i| + |F_i|` at the unknowns.
+    /// Times the machine precision, it bounds what rounding leaves of it.
+    pub fn imbalance_terms(&self, i: usize, u: &[f64]) -> Vec<f64> {
+        let terms = |a: usize| {
+            let row = self.stiffness.outer_view(a).expect("a vertex has a row");
+            self.tension[i] * row.iter().map(|(b, k)| (k * u[b]).abs()).sum::<f64>() + self.load[i][a].abs()
+        };
+        self.interior.iter().map(|&a| terms(a)).collect()
+    }
+
+    /// `(K v)_a`.
+    pub(crate) fn stiffness_row(&self, a: usize, v: impl Fn(usize) -> f64) -> f64 {
+        let row = self.stiffness.outer_view(a).expect("a vertex has a row");
+        row.iter().map(|(b, k)| k * v(b)).sum()
+    }
+
+    /// A function over vertices from its values at the unknowns and on the boundary (zero where unused).
+    pub(crate) fn extend(&self, unknowns: &[f64], boundary: impl Fn(usize) -> f64) -> Vec<f64> {
+        let mut values: Vec<f64> = (0..self.mesh.points().len())
+            .map(|a| if self.mesh.kind()[a] == VertexKind::Boundary { boundary(a) } else { 0.0 })
+            .collect();
+        for (&a, &value) in self.interior.iter().zip(unknowns) {
+            values[a] = value;
+        }
+        values
+    }
+}
+
+impl Scales {
+    fn new(mesh: &Mesh, tension: [f64; 2], load: &[Vec<f64>; 2], height: &[f64], dual_area: &[f64]) -> Self {
+        let used = |&a: &usize| mesh.kind()[a] != VertexKind::Unused;
+        let density = [0, 1].map(|i| {
+            let densities = (0..height.len()).filter(used).map(|a| load[i][a].abs() / dual_area[a]);
+            densities.fold(0.0, f64::max)
+        });
+        let heights =
+            || (0..height.len()).filter(|&a| mesh.kind()[a] == VertexKind::Boundary).map(|a| height[a]);
+        let [lowest, highest] = [heights().fold(f64::INFINITY, f64::min), heights().fold(0.0, f64::max)];
+        let (lower, upper) = mesh.bounding_box();
+        let width = (upper[0] - lower[0]).min(upper[1] - lower[1]);
+        let compliance = width * width / 8.0;
+
+        let deflection = (density[0] / tension[0]).max(density[1] / tension[1]) * compliance;
+        let force_density = density[0].max(density[1]).max(tension[0] * (highest - lowest) / compliance);
+        // Without any load, and at a constant height, everything is at rest: any scale serves.
+        let or_one = |scale: f64| if scale == 0.0 { 1.0 } else { scale };
+        Self {
+            displacement: or_one(highest + deflection),
+            force_density: or_one(force_density),
+            dual_area: dual_area.iter().copied().fold(0.0, f64::max),
+        }
+    }
+}
+
+fn boundary_height(problem: &ContactProblem, mesh: &Mesh) -> Result<Vec<f64>, DiscretizationError> {
+    let mut height = vec![0.0; mesh.points().len()];
+    for (vertex, height) in height.iter_mut().enumerate() {
+        if mesh.kind()[vertex] == VertexKind::Boundary {
+            let point = mesh.points()[vertex];
+            *height = problem.height().eval(point[0], point[1]);
+            if !(*height >= 0.0 && height.is_finite()) {
+                return Err(DiscretizationError::Height { vertex, point, value: *height });
+            }
+        }
+    }
+    Ok(height)
+}
+
+/// The rows and columns `chosen` (increasing) of a matrix.
+pub(crate) fn principal_submatrix(matrix: &CsMat<f64>, chosen: &[usize]) -> CsMat<f64> {
+    let mut number = vec![usize::MAX; matrix.cols()];
+    for (k, &a) in chosen.iter().enumerate() {
+        number[a] = k;
+    }
+    let mut start = Vec::with_capacity(chosen.len() + 1);
+    let (mut columns, mut values) = (Vec::new(), Vec::new());
+    start.push(0);
+    for &a in chosen {
+        let row = matrix.outer_view(a).expect("a chosen row exists");
+        for (b, &value) in row.iter().filter(|&(b, _)| number[b] != usize::MAX) {
+            columns.push(number[b]);
+            values.push(value);
+        }
+        start.push(columns.len());
+    }
+    CsMat::new((chosen.len(), chosen.len()), start, columns, values)
+}
+
+/// Why a problem cannot be posed on a mesh.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum DiscretizationError {
+    /// A load is not finite.
+    #[error("load f{membrane} has no finite value: {source}")]
+    Load {
+        /// 1 or 2.
+        membrane: usize,
+        /// Where, and what it is there.
+        source: NotFinite,
+    },
+    /// The height is negative or not finite at a boundary vertex.
+    #[error("height g is {value} at the boundary vertex {vertex} ({}, {}): it must be finite and >= 0 on the whole boundary", point[0], point[1])]
+    Height {
+        /// The vertex, counted from 0.
+        vertex: usize,
+        /// Its coordinates.
+        point: [f64; 2],
+        /// The value there.
+        value: f64,
+    },
+    /// The size of the solution cannot be represented.
+    #[error(
+        "the displacements overflow: loads, height, or their ratio to the tensions are too large; choose other units"
+    )]
+    Overflow,
+}

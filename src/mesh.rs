@@ -1,0 +1,99 @@
+//! The triangulation `T_h` of the domain: checked construction, generators, the Gmsh reader, refinement.
+
+mod adjacency;
+mod check;
+mod generate;
+pub mod gmsh;
+mod polygon;
+mod quality;
+mod read;
+mod refine;
+mod structured;
+
+pub use check::MeshError;
+pub use generate::{GenerateError, MeshSize, generate};
+pub use polygon::polygon;
+pub use quality::MeshQuality;
+pub use read::ReadError;
+pub use refine::Refinement;
+pub use structured::{Pattern, disk, l_shape, rectangle};
+
+pub(crate) use adjacency::VertexTriangles;
+
+/// Where a vertex lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum VertexKind {
+    /// Inside the domain: it carries unknowns (`a` in `V_h`).
+    Interior,
+    /// On the boundary: `u1 = g`, `u2 = 0`.
+    Boundary,
+    /// In no triangle: kept in the output, left out of the system.
+    Unused,
+}
+
+/// A conforming triangulation of a bounded set of the plane: several components and holes are allowed.
+///
+/// Valid by construction ([`Mesh::new`]) and immutable; [`Mesh::refine`] returns a new one.
+#[derive(Debug, Clone)]
+pub struct Mesh {
+    points: Vec<[f64; 2]>,
+    triangles: Vec<[usize; 3]>,
+    kind: Vec<VertexKind>,
+}
+
+impl Mesh {
+    /// The vertices, in the order in which they were given. Shape: `vertices x 2`; unit: length.
+    pub fn points(&self) -> &[[f64; 2]] {
+        &self.points
+    }
+
+    /// The triangles, as vertex numbers in counterclockwise order. Shape: `triangles x 3`.
+    pub fn triangles(&self) -> &[[usize; 3]] {
+        &self.triangles
+    }
+
+    /// The kind of each vertex. Shape: `vertices`.
+    pub fn kind(&self) -> &[VertexKind] {
+        &self.kind
+    }
+
+    /// The corners of triangle `t`, counterclockwise.
+    pub fn corners(&self, t: usize) -> [[f64; 2]; 3] {
+        self.triangles[t].map(|a| self.points[a])
+    }
+
+    /// The area of triangle `t`, positive.
+    pub fn triangle_area(&self, t: usize) -> f64 {
+        0.5 * twice_signed_area(self.corners(t))
+    }
+
+    /// The area of the domain `|omega|`.
+    pub fn area(&self) -> f64 {
+        (0..self.triangles.len()).map(|t| self.triangle_area(t)).sum()
+    }
+
+    /// The smallest rectangle around the triangles, as `(lower left, upper right)`.
+    pub fn bounding_box(&self) -> ([f64; 2], [f64; 2]) {
+        let mut lower = [f64::INFINITY; 2];
+        let mut upper = [f64::NEG_INFINITY; 2];
+        for (point, &kind) in self.points.iter().zip(&self.kind) {
+            if kind != VertexKind::Unused {
+                for axis in 0..2 {
+                    lower[axis] = lower[axis].min(point[axis]);
+                    upper[axis] = upper[axis].max(point[axis]);
+                }
+            }
+        }
+        (lower, upper)
+    }
+}
+
+/// Twice the area of a triangle, positive when its corners run counterclockwise.
+pub(crate) fn twice_signed_area([a, b, c]: [[f64; 2]; 3]) -> f64 {
+    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+}
+
+/// The square of the distance of two points.
+pub(crate) fn distance_sq(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (b[0] - a[0]).powi(2) + (b[1] - a[1]).powi(2)
+}

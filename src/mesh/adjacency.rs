@@ -1,0 +1,88 @@
+//! Who meets whom: the triangles around a vertex, the half edges of a mesh.
+
+/// The triangles `T_a` around each vertex `a`, in compressed rows, in increasing order.
+#[derive(Debug)]
+pub(crate) struct VertexTriangles {
+    start: Vec<usize>,
+    triangles: Vec<usize>,
+}
+
+impl VertexTriangles {
+    /// Collects the rows by counting: linear in the number of triangles.
+    pub(crate) fn new(vertices: usize, triangles: &[[usize; 3]]) -> Self {
+        let corners = || triangles.iter().enumerate().flat_map(|(t, corners)| corners.map(|a| (a, t)));
+        let (start, triangles) = group_by_key(vertices, corners);
+        Self { start, triangles }
+    }
+
+    /// The triangles that share vertex `a`.
+    pub(crate) fn of(&self, a: usize) -> &[usize] {
+        &self.triangles[self.start[a]..self.start[a + 1]]
+    }
+}
+
+/// An edge as one of its triangles sees it, filed under its lower end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
+pub(crate) struct HalfEdge {
+    /// The upper end.
+    pub(crate) end: usize,
+    /// Whether the triangle, run through counterclockwise, passes from the upper to the lower end.
+    pub(crate) reversed: bool,
+    /// The triangle.
+    pub(crate) triangle: usize,
+}
+
+/// All half edges, filed under their lower ends, sorted there: those of one edge are neighbours.
+#[derive(Debug)]
+pub(crate) struct HalfEdges {
+    start: Vec<usize>,
+    half_edges: Vec<HalfEdge>,
+}
+
+impl HalfEdges {
+    pub(crate) fn new(vertices: usize, triangles: &[[usize; 3]]) -> Self {
+        let sides = || {
+            triangles.iter().enumerate().flat_map(|(triangle, &[a, b, c])| {
+                [(a, b), (b, c), (c, a)].map(|(from, to)| {
+                    let reversed = from > to;
+                    (from.min(to), HalfEdge { end: from.max(to), reversed, triangle })
+                })
+            })
+        };
+        let (start, mut half_edges) = group_by_key(vertices, sides);
+        for row in start.windows(2) {
+            half_edges[row[0]..row[1]].sort_unstable();
+        }
+        Self { start, half_edges }
+    }
+
+    /// The edges of the mesh: lower end, upper end, and the triangles that see it. In increasing order of the ends.
+    pub(crate) fn edges(&self) -> impl Iterator<Item = (usize, usize, &[HalfEdge])> {
+        (0..self.start.len() - 1).flat_map(move |lower| {
+            self.half_edges[self.start[lower]..self.start[lower + 1]]
+                .chunk_by(|a, b| a.end == b.end)
+                .map(move |sides| (lower, sides[0].end, sides))
+        })
+    }
+}
+
+/// Counting sort: values grouped by their keys `0..keys`, the order within a group kept.
+fn group_by_key<V: Copy + Default, I: Iterator<Item = (usize, V)>>(
+    keys: usize,
+    items: impl Fn() -> I,
+) -> (Vec<usize>, Vec<V>) {
+    let mut start = vec![0; keys + 1];
+    for (key, _) in items() {
+        start[key + 1] += 1;
+    }
+    for key in 0..keys {
+        start[key + 1] += start[key];
+    }
+    let mut next = start.clone();
+    let mut values = vec![V::default(); start[keys]];
+    for (key, value) in items() {
+        values[next[key]] = value;
+        next[key] += 1;
+    }
+    (start, values)
+}

@@ -1,0 +1,204 @@
+//! Why a Gmsh file cannot be used.
+
+use std::fmt;
+
+use thiserror::Error;
+
+/// A position in a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Place {
+    /// Line of an ASCII file, from 1.
+    Line(usize),
+    /// Number of bytes of a binary file that were read by then.
+    Byte(usize),
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Line(line) => write!(f, "line {line}"),
+            Self::Byte(byte) => write!(f, "byte {byte}"),
+        }
+    }
+}
+
+/// Why a Gmsh file cannot be used. Every message is one line and says what to do.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum GmshError {
+    /// The file does not begin with `$MeshFormat`.
+    #[error(
+        "not a Gmsh mesh: the file does not begin with $MeshFormat; \
+         make a mesh with `gmsh -2 -format msh41 -o plate.msh plate.geo`"
+    )]
+    NotGmsh,
+    /// A version other than 2.2 and 4.1.
+    #[error(
+        "MSH version {found} is not read, only 2.2 and 4.1; \
+         convert the file with `gmsh old.msh -save -format msh41 -o new.msh`"
+    )]
+    Version {
+        /// The version that the file declares.
+        found: String,
+    },
+    /// Numbers of a size other than 8 bytes.
+    #[error("numbers of {found} bytes are not read, only of 8; write the file with a 64-bit Gmsh")]
+    DataSize {
+        /// The size that the file declares.
+        found: String,
+    },
+    /// The integer after the header of a binary file is not 1 in either byte order.
+    #[error(
+        "$MeshFormat: bytes {found:?} where a binary file has the integer 1; \
+         the file is damaged (was it copied as text?): write it again with Gmsh"
+    )]
+    ByteOrder {
+        /// The four bytes that were found.
+        found: [u8; 4],
+    },
+    /// Something else than what the format demands, or the end of the file.
+    #[error(
+        "{place}, ${section}: expected {expected}, found {found}; \
+         the file is cut short or damaged: write it again with Gmsh"
+    )]
+    Syntax {
+        /// Where.
+        place: Place,
+        /// Name of the section.
+        section: String,
+        /// What the format demands there.
+        expected: String,
+        /// What stands there.
+        found: String,
+    },
+    /// A count that is negative or larger than the rest of the file can hold.
+    #[error(
+        "{place}, ${section}: {count} {of} are declared, but {left} bytes are left; \
+         the file is cut short or damaged: write it again with Gmsh"
+    )]
+    Count {
+        /// Where.
+        place: Place,
+        /// Name of the section.
+        section: String,
+        /// What is counted.
+        of: &'static str,
+        /// The declared number.
+        count: i128,
+        /// Bytes from there to the end of the file.
+        left: usize,
+    },
+    /// The blocks of a section do not add up to the number at its head.
+    #[error(
+        "{place}, ${section}: {declared} {of} are declared, but its blocks hold {found}; \
+         the file is damaged: write it again with Gmsh"
+    )]
+    Total {
+        /// Where the section ends.
+        place: Place,
+        /// Name of the section.
+        section: String,
+        /// What is counted.
+        of: &'static str,
+        /// The number at the head of the section.
+        declared: usize,
+        /// The number in the blocks.
+        found: usize,
+    },
+    /// `$Nodes` or `$Elements` twice.
+    #[error("{place}: a second section ${section}; put one mesh into a file")]
+    RepeatedSection {
+        /// Where the second one begins.
+        place: Place,
+        /// Name of the section.
+        section: String,
+    },
+    /// No `$Nodes`, or not before `$Elements`.
+    #[error("there is no section $Nodes before $Elements; write the file again with Gmsh")]
+    MissingNodes,
+    /// No `$Elements`.
+    #[error("there is no section $Elements; mesh the surface (`gmsh -2`) and write the file again with Gmsh")]
+    MissingElements,
+    /// MSH 2.2 with parameters of the nodes.
+    #[error("$ParametricNodes are not read; write the file with Mesh.SaveParametric = 0, or as MSH 4.1")]
+    ParametricNodes,
+    /// A coordinate that is infinite or no number.
+    #[error("{place}, $Nodes: node {node} has a coordinate {value}; every coordinate must be finite")]
+    NotFinite {
+        /// Where.
+        place: Place,
+        /// Its tag.
+        node: u64,
+        /// The coordinate.
+        value: f64,
+    },
+    /// Two nodes with one tag.
+    #[error(
+        "$Nodes: nodes number {first} and {second} both have the tag {node}; \
+         make the tags unique (`RenumberMeshNodes` in Gmsh)"
+    )]
+    RepeatedNode {
+        /// The tag.
+        node: u64,
+        /// Number of the first node that has it, from 1.
+        first: usize,
+        /// Number of the second one.
+        second: usize,
+    },
+    /// A triangle with a vertex that is not in `$Nodes`.
+    #[error(
+        "{place}, $Elements: triangle {element} names the node {node}, which is not in $Nodes; \
+         write the file again with Gmsh"
+    )]
+    UnknownNode {
+        /// Where.
+        place: Place,
+        /// Tag of the triangle.
+        element: u64,
+        /// Tag of the node.
+        node: u64,
+    },
+    /// Elements that are neither triangles of three nodes, nor points, nor lines of two nodes.
+    #[error("{place}, $Elements: {shape} (element type {code}) are not read; {remedy}")]
+    Element {
+        /// Where.
+        place: Place,
+        /// What they are.
+        shape: &'static str,
+        /// Gmsh's number for them.
+        code: i32,
+        /// How to get a mesh without them.
+        remedy: &'static str,
+    },
+    /// A node of a triangle outside the plane of the others.
+    #[error(
+        "the mesh is not flat: node {node} has z = {height:?}, the mesh begins at z = {plane:?}; \
+         turn the surface into a plane z = constant"
+    )]
+    NotFlat {
+        /// Tag of the node.
+        node: u64,
+        /// Its third coordinate.
+        height: f64,
+        /// Third coordinate of the first vertex of the first triangle.
+        plane: f64,
+    },
+    /// Only points and lines.
+    #[error(
+        "no triangle among the elements ({others} points and lines); mesh the surface (`gmsh -2`), and if there \
+         are physical groups, put the surface into one or set Mesh.SaveAll = 1"
+    )]
+    NoTriangle {
+        /// Number of other elements.
+        others: usize,
+    },
+}
+
+/// The first characters of a text from the file, without line breaks or control characters, for a message.
+pub(super) fn excerpt(text: &str) -> String {
+    const LONGEST: usize = 32;
+    let mut shown: String = text.chars().take(LONGEST).flat_map(char::escape_debug).collect();
+    if text.chars().nth(LONGEST).is_some() {
+        shown.push_str("...");
+    }
+    shown
+}

@@ -1,0 +1,231 @@
+//! Files that Gmsh 4.15.2 wrote (`tests/data/gmsh/make.py`).
+
+mod broken;
+mod handmade;
+
+use std::collections::HashSet;
+
+use super::{GmshTriangulation, parse};
+
+macro_rules! file {
+    ($name:literal) => {
+        include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/gmsh/", $name, ".msh")).as_slice()
+    };
+}
+
+/// Gmsh prints 16 digits, which is up to one unit in the last place off; coordinates are of order one.
+const PRINTED: f64 = 1e-15;
+/// Rounding of an area of order one, summed over some ten triangles (thousands for the plate).
+const AREA: f64 = 1e-12;
+
+/// A file that can be read, and what is in it.
+struct Valid {
+    name: &'static str,
+    bytes: &'static [u8],
+    nodes: usize,
+    triangles: usize,
+    area: f64,
+    /// Vertices - edges + triangles: the number of components less the number of holes.
+    euler: isize,
+}
+
+macro_rules! valid {
+    ($name:literal, $nodes:literal, $triangles:literal, $area:expr, $euler:literal) => {
+        Valid {
+            name: $name,
+            bytes: file!($name),
+            nodes: $nodes,
+            triangles: $triangles,
+            area: $area,
+            euler: $euler,
+        }
+    };
+}
+
+const RECTANGLE: f64 = 1.2 * 0.8;
+
+const VALID: &[Valid] = &[
+    valid!("rectangle_22_ascii", 25, 34, RECTANGLE, 1),
+    valid!("rectangle_22_binary", 25, 34, RECTANGLE, 1),
+    valid!("rectangle_41_ascii", 25, 34, RECTANGLE, 1),
+    valid!("rectangle_41_binary", 25, 34, RECTANGLE, 1),
+    valid!("sparse_22_ascii", 5, 4, 1.0, 1),
+    valid!("sparse_22_binary", 5, 4, 1.0, 1),
+    valid!("sparse_41_ascii", 7, 4, 1.0, 1),
+    valid!("sparse_41_binary", 7, 4, 1.0, 1),
+    valid!("no_groups_41", 24, 32, RECTANGLE, 1),
+    valid!("two_groups_22_ascii", 15, 18, RECTANGLE, 1),
+    valid!("two_groups_22_binary", 15, 18, RECTANGLE, 1),
+    valid!("two_groups_41", 15, 18, RECTANGLE, 1),
+    valid!("two_surfaces_41", 30, 36, 2.0 * RECTANGLE, 2),
+    valid!("hole_41", 30, 40, RECTANGLE - 0.4 * 0.2, 0),
+    valid!("height_41", 15, 18, RECTANGLE, 1),
+    valid!("periodic_view_41_ascii", 15, 18, RECTANGLE, 1),
+    valid!("periodic_view_41_binary", 15, 18, RECTANGLE, 1),
+    valid!("parametric_41_ascii", 15, 18, RECTANGLE, 1),
+    valid!("parametric_41_binary", 15, 18, RECTANGLE, 1),
+    valid!("partitioned_22", 15, 18, RECTANGLE, 1),
+    valid!("partitioned_41_ascii", 15, 18, RECTANGLE, 1),
+    valid!("partitioned_41_binary", 15, 18, RECTANGLE, 1),
+];
+
+fn area(mesh: &GmshTriangulation) -> f64 {
+    let twice = |&[a, b, c]: &[usize; 3]| {
+        let [[ax, ay], [bx, by], [cx, cy]] = [mesh.points[a], mesh.points[b], mesh.points[c]];
+        ((bx - ax) * (cy - ay) - (cx - ax) * (by - ay)).abs()
+    };
+    mesh.triangles.iter().map(twice).sum::<f64>() / 2.0
+}
+
+fn euler(mesh: &GmshTriangulation) -> isize {
+    let vertices: HashSet<_> = mesh.triangles.iter().flatten().collect();
+    let edges: HashSet<_> = mesh
+        .triangles
+        .iter()
+        .flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)])
+        .map(|(a, b)| (a.min(b), a.max(b)))
+        .collect();
+    vertices.len() as isize - edges.len() as isize + mesh.triangles.len() as isize
+}
+
+/// Whether two meshes differ by the rounding of printed coordinates only.
+fn same(one: &GmshTriangulation, other: &GmshTriangulation) -> bool {
+    let close = |p: &[f64; 2], q: &[f64; 2]| (p[0] - q[0]).abs() <= PRINTED && (p[1] - q[1]).abs() <= PRINTED;
+    one.points.len() == other.points.len()
+        && one.points.iter().zip(&other.points).all(|(p, q)| close(p, q))
+        && one.triangles == other.triangles
+        && one.node_tags == other.node_tags
+        && one.element_tags == other.element_tags
+}
+
+fn read(bytes: &[u8]) -> GmshTriangulation {
+    parse(bytes).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The message of a file that cannot be used: one line.
+fn refused(bytes: &[u8]) -> String {
+    let message = parse(bytes).expect_err("the file is accepted").to_string();
+    assert!(!message.contains(char::is_control), "{message:?}");
+    message
+}
+
+#[test]
+fn every_file_has_its_nodes_triangles_area_and_topology() {
+    for file in VALID {
+        let mesh = read(file.bytes);
+        assert_eq!((mesh.points.len(), mesh.triangles.len()), (file.nodes, file.triangles), "{}", file.name);
+        assert_eq!((mesh.node_tags.len(), mesh.element_tags.len()), (file.nodes, file.triangles));
+        assert!((area(&mesh) - file.area).abs() < AREA, "{}: area {}", file.name, area(&mesh));
+        assert_eq!(euler(&mesh), file.euler, "{}", file.name);
+
+        let mut torn = mesh.clone();
+        torn.triangles.pop();
+        assert!((area(&torn) - file.area).abs() > AREA);
+    }
+}
+
+#[test]
+fn the_four_encodings_give_the_same_triangulation() {
+    let reference = read(file!("rectangle_41_binary"));
+    for other in [file!("rectangle_41_ascii"), file!("rectangle_22_ascii"), file!("rectangle_22_binary")] {
+        assert!(same(&reference, &read(other)));
+    }
+    let text = String::from_utf8(file!("rectangle_41_ascii").to_vec()).expect("ASCII");
+    for (from, to) in [("0.2999999999993066", "0.2999999999993166"), ("\n18 6 13 20", "\n18 6 20 13")] {
+        let changed = text.replace(from, to);
+        assert_ne!(changed, text);
+        assert!(!same(&reference, &read(changed.as_bytes())));
+    }
+}
+
+#[test]
+fn sections_around_the_mesh_do_not_change_it() {
+    let view = read(file!("periodic_view_41_binary"));
+    assert!(same(&view, &read(file!("periodic_view_41_ascii"))));
+    let parts = read(file!("partitioned_41_binary"));
+    assert!(same(&parts, &read(file!("partitioned_41_ascii"))));
+    let plain = read(file!("two_groups_41"));
+    for parametric in [file!("parametric_41_ascii"), file!("parametric_41_binary")] {
+        assert_eq!(read(parametric).triangles, plain.triangles);
+    }
+    assert_ne!(parts.node_tags, plain.node_tags);
+}
+
+#[test]
+fn a_surface_in_two_groups_is_taken_once_from_msh_22() {
+    let once = read(file!("two_groups_41"));
+    for twice in [file!("two_groups_22_ascii"), file!("two_groups_22_binary")] {
+        let mesh = read(twice);
+        assert_eq!(mesh.triangles, once.triangles);
+        // Ten lines come first, and each triangle takes two tags.
+        assert_eq!(mesh.element_tags, (0..18).map(|k| 11 + 2 * k).collect::<Vec<_>>());
+    }
+}
+
+#[test]
+fn sparse_tags_and_unused_nodes_keep_their_place() {
+    for bytes in [file!("sparse_41_ascii"), file!("sparse_41_binary")] {
+        let mesh = read(bytes);
+        assert_eq!(mesh.node_tags, [7, 9_000_000, 12, 400, 5, 1_000_003, 33]);
+        assert_eq!(mesh.triangles, [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]]);
+        assert_eq!(mesh.element_tags, [50, 2_000_000, 3, 9]);
+        assert_eq!(mesh.points[5..], [[2.0, 2.0], [3.0, 0.0]]);
+    }
+    // MSH 2.2 has the used nodes only, sorted by tag.
+    for bytes in [file!("sparse_22_ascii"), file!("sparse_22_binary")] {
+        let mesh = read(bytes);
+        assert_eq!(mesh.node_tags, [5, 7, 12, 400, 9_000_000]);
+        assert_eq!(mesh.triangles, [[1, 4, 0], [4, 2, 0], [2, 3, 0], [3, 1, 0]]);
+    }
+}
+
+#[test]
+fn line_ends_of_windows_and_empty_lines_are_read() {
+    for file in VALID.iter().filter(|file| file.bytes.is_ascii() && !file.bytes.contains(&0)) {
+        let text = str::from_utf8(file.bytes).expect("ASCII");
+        let mesh = read(file.bytes);
+        assert_eq!(read(text.replace('\n', "\r\n").as_bytes()), mesh, "{}", file.name);
+        assert_eq!(read(text.replace('\n', " \n\n").as_bytes()), mesh, "{}", file.name);
+        refused(text.replace('\n', " ").as_bytes());
+    }
+}
+
+#[test]
+fn files_without_a_plane_triangulation_are_refused_with_a_remedy() {
+    let table = [
+        (file!("version_1"), "MSH version 1 is not read", "gmsh old.msh -save -format msh41"),
+        (file!("version_40"), "MSH version 4 is not read", "gmsh old.msh -save -format msh41"),
+        (
+            file!("quadrangles_41"),
+            "line 91, $Elements: quadrangles (element type 3)",
+            "Mesh.RecombineAll = 0",
+        ),
+        (file!("quadrangles_22_binary"), "$Elements: quadrangles (element type 3)", "Mesh.RecombineAll = 0"),
+        (file!("second_order_41"), "elements of higher order (element type 8)", "Mesh.ElementOrder = 1"),
+        (
+            file!("second_order_22_binary"),
+            "elements of higher order (element type 8)",
+            "Mesh.ElementOrder = 1",
+        ),
+        (file!("tetrahedra_41"), "volume elements (element type 4)", "gmsh -2"),
+        (file!("tetrahedra_41_binary"), "volume elements (element type 4)", "gmsh -2"),
+        (file!("not_flat_41"), "node 1 has z = 1.0, the mesh begins at z = 0.0", "plane z = constant"),
+        (file!("not_flat_22"), "not flat", "plane z = constant"),
+        (file!("only_curves_41"), "no triangle among the elements (10 points and lines)", "Mesh.SaveAll = 1"),
+        (file!("only_curves_22"), "no triangle among the elements (10 points and lines)", "Mesh.SaveAll = 1"),
+        (file!("parametric_22"), "$ParametricNodes are not read", "Mesh.SaveParametric = 0"),
+    ];
+    for (bytes, reason, remedy) in table {
+        let message = refused(bytes);
+        assert!(message.contains(reason) && message.contains(remedy), "{message}");
+    }
+}
+
+#[test]
+fn the_plate_of_the_examples_is_read_as_by_meshio() {
+    let mesh = read(include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/plate.msh")));
+    // By meshio 5.3.5.
+    assert_eq!((mesh.points.len(), mesh.triangles.len()), (2411, 4500));
+    assert!((area(&mesh) - 1.7210238159722744).abs() < AREA, "area {}", area(&mesh));
+    assert_eq!(euler(&mesh), 1 - 3);
+}

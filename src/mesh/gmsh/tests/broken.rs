@@ -1,0 +1,81 @@
+//! Valid files cut short and changed at random.
+
+use super::super::parse;
+use super::{VALID, read};
+
+/// Where the last triangle is complete: the front of the line `$EndElements`.
+fn end_of_elements(bytes: &[u8]) -> usize {
+    let closing = b"\n$EndElements";
+    bytes.windows(closing.len()).rposition(|window| window == closing).expect("the section is closed")
+}
+
+#[test]
+fn a_file_cut_anywhere_is_refused_or_read_in_full() {
+    for file in VALID {
+        let mesh = read(file.bytes);
+        let closed = end_of_elements(file.bytes) + "\n$EndElements".len();
+        for cut in 0..file.bytes.len() {
+            match parse(&file.bytes[..cut]) {
+                Ok(found) => assert!(cut >= closed && found == mesh, "{} cut at {cut}", file.name),
+                Err(error) => assert!(cut != closed, "{} cut at {cut}: {error}", file.name),
+            }
+        }
+    }
+}
+
+/// Knuth's linear congruential generator (MMIX); the high bits are good.
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, bound: usize) -> usize {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        ((u128::from(self.0) * bound as u128) >> 64) as usize
+    }
+
+    /// Changes some bytes: to any byte, to one that means something in a file, or by moving a passage.
+    fn mutate(&mut self, bytes: &mut Vec<u8>) {
+        const TELLING: &[u8] = b"0123456789-.eE \n\r\t$nafi\0\x01\x7f\x80\xff";
+        for _ in 0..=self.below(4) {
+            let at = self.below(bytes.len());
+            match self.below(5) {
+                0 => bytes[at] = self.below(256) as u8,
+                1 => bytes[at] = TELLING[self.below(TELLING.len())],
+                2 => bytes.insert(at, TELLING[self.below(TELLING.len())]),
+                3 => drop(bytes.drain(at..(at + 1 + self.below(12)).min(bytes.len() - 1).max(at))),
+                _ => {
+                    let length = self.below(40).min(bytes.len() - at);
+                    let to = self.below(bytes.len() - length + 1);
+                    bytes.copy_within(at..at + length, to);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_file_changed_at_random_is_refused_or_read_without_contradiction() {
+    const CHANGES: usize = 1500;
+    let mut random = Random(1);
+    let (mut accepted, mut rejected) = (0, 0);
+    for file in VALID {
+        for _ in 0..CHANGES {
+            let mut bytes = file.bytes.to_vec();
+            random.mutate(&mut bytes);
+            match parse(&bytes) {
+                Ok(mesh) => {
+                    accepted += 1;
+                    assert_eq!(mesh.points.len(), mesh.node_tags.len());
+                    assert_eq!(mesh.triangles.len(), mesh.element_tags.len());
+                    assert!(mesh.points.iter().flatten().all(|x| x.is_finite()));
+                    assert!(mesh.triangles.iter().flatten().all(|&k| k < mesh.points.len()));
+                }
+                Err(error) => {
+                    rejected += 1;
+                    assert!(!error.to_string().contains(char::is_control), "{error:?}");
+                }
+            }
+        }
+    }
+    // Most changes do harm, some fall on a coordinate or on a skipped section.
+    assert!(accepted > CHANGES && rejected > CHANGES, "{accepted} accepted, {rejected} rejected");
+}

@@ -1,0 +1,124 @@
+//! `$Nodes` and `$Elements` of MSH 2.2, where every record stands for itself and every whole number is an `int`.
+
+use super::elements::{Elements, Kind};
+use super::error::GmshError;
+use super::nodes::{Nodes, read_point};
+use super::scanner::{Encoding, Scanner};
+
+/// Reads the nodes: their number, then `tag x y z` for each.
+pub(super) fn nodes(scanner: &mut Scanner) -> Result<Nodes, GmshError> {
+    let declared = head(scanner, "nodes")?;
+    let (mut tags, mut points, mut heights) = (Vec::new(), Vec::new(), Vec::new());
+    for _ in 0..declared {
+        let tag = read_tag(scanner, "a node tag")?;
+        read_point(scanner, tag, &mut points, &mut heights)?;
+        scanner.end_record()?;
+        tags.push(tag);
+    }
+    Nodes::new(tags, points, heights)
+}
+
+/// Reads the elements: their number, then one by one (ASCII) or in runs of one kind (binary).
+pub(super) fn elements(scanner: &mut Scanner, nodes: &Nodes) -> Result<Elements, GmshError> {
+    let declared = head(scanner, "elements")?;
+    let mut reader = Reader { scanner, nodes, elements: Elements::default() };
+    match reader.scanner.encoding() {
+        Encoding::Ascii => {
+            for _ in 0..declared {
+                reader.ascii_element()?;
+            }
+        }
+        Encoding::Binary(_) => {
+            let mut left = declared;
+            while left > 0 {
+                left -= reader.binary_run(left)?;
+            }
+        }
+    }
+    Ok(reader.elements)
+}
+
+/// Reads the line with the number of records, which is text in binary files too.
+fn head(scanner: &mut Scanner, of: &'static str) -> Result<usize, GmshError> {
+    let declared: u64 = scanner.text_number("a number of records")?;
+    let declared = scanner.count(declared, of)?;
+    scanner.end_line()?;
+    Ok(declared)
+}
+
+fn read_tag(scanner: &mut Scanner, expected: &str) -> Result<u64, GmshError> {
+    let tag = scanner.int(expected)?;
+    u64::try_from(tag).map_err(|_| scanner.unexpected(expected, &tag.to_string()))
+}
+
+/// Reads elements one after the other.
+struct Reader<'s, 'a> {
+    scanner: &'s mut Scanner<'a>,
+    nodes: &'s Nodes,
+    elements: Elements,
+}
+
+impl Reader<'_, '_> {
+    /// `tag type number-of-labels labels nodes`.
+    fn ascii_element(&mut self) -> Result<(), GmshError> {
+        let element = read_tag(self.scanner, "an element tag")?;
+        let kind = Kind::read(self.scanner)?;
+        let labels = self.label_count()?;
+        self.labels_and_nodes(element, kind, labels)?;
+        self.scanner.end_line()
+    }
+
+    /// `type number-of-elements number-of-labels`, then `tag labels nodes` for each element; returns their number.
+    fn binary_run(&mut self, left: usize) -> Result<usize, GmshError> {
+        let kind = Kind::read(self.scanner)?;
+        let length = self.scanner.int("the number of elements of a run")?;
+        let Some(length) = usize::try_from(length).ok().filter(|length| (1..=left).contains(length)) else {
+            let expected = format!("the number of elements of a run, from 1 to {left}");
+            return Err(self.scanner.unexpected(&expected, &length.to_string()));
+        };
+        let labels = self.label_count()?;
+        for _ in 0..length {
+            let element = read_tag(self.scanner, "an element tag")?;
+            self.labels_and_nodes(element, kind, labels)?;
+        }
+        Ok(length)
+    }
+
+    fn label_count(&mut self) -> Result<usize, GmshError> {
+        let declared = self.scanner.int("the number of labels of an element")?;
+        self.scanner.count(declared, "labels of an element")
+    }
+
+    /// Skips the labels (physical group, surface, partitions) and takes the nodes.
+    fn labels_and_nodes(&mut self, element: u64, kind: Kind, labels: usize) -> Result<(), GmshError> {
+        for _ in 0..labels {
+            self.scanner.int("a label of an element")?;
+        }
+        let mut vertices = [0; 3];
+        for vertex in &mut vertices[..kind.nodes()] {
+            *vertex = read_tag(self.scanner, "the node tag of an element")?;
+        }
+        if kind != Kind::Triangle {
+            self.elements.others += 1;
+            return Ok(());
+        }
+        self.elements.add(self.scanner, self.nodes, element, vertices)?;
+        self.drop_repetition();
+        Ok(())
+    }
+
+    /// Drops the last triangle if it repeats the one before: for a surface in several physical groups Gmsh
+    /// writes each triangle once per group, one right behind the other (a negative group reverses it).
+    fn drop_repetition(&mut self) {
+        let sorted = |mut triangle: [usize; 3]| {
+            triangle.sort_unstable();
+            triangle
+        };
+        if let [.., before, last] = self.elements.triangles[..]
+            && sorted(before) == sorted(last)
+        {
+            self.elements.triangles.pop();
+            self.elements.tags.pop();
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! Structured meshes: rectangle, L-shape, disk.
+
+use super::Mesh;
+
+/// How a rectangular cell is divided.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Pattern {
+    /// Into two right triangles, by the diagonal from the lower left to the upper right corner.
+    #[default]
+    Right,
+    /// Into four triangles, by both diagonals.
+    Crossed,
+}
+
+/// The rectangle `(lower, upper)` in `cells[0] x cells[1]` cells. Vertices run along `x` first; the cell centres of the
+/// crossed pattern follow.
+///
+/// # Panics
+/// When a side is not positive or a number of cells is zero.
+pub fn rectangle(lower: [f64; 2], upper: [f64; 2], cells: [usize; 2], pattern: Pattern) -> Mesh {
+    grid(lower, upper, cells, pattern, |_, _| true)
+}
+
+/// The L-shape `(-a, a)^2` without `[0, a] x [-a, 0]`, `cells` cells along its half width `a`.
+///
+/// # Panics
+/// When `half_width` is not positive or `cells` is zero.
+pub fn l_shape(half_width: f64, cells: usize, pattern: Pattern) -> Mesh {
+    let corner = [half_width; 2];
+    grid(corner.map(|a| -a), corner, [2 * cells; 2], pattern, |i, j| i < cells || j >= cells)
+}
+
+/// The cells `(i, j)` of a grid that belong to the domain, divided by the pattern.
+fn grid(
+    lower: [f64; 2],
+    upper: [f64; 2],
+    [nx, ny]: [usize; 2],
+    pattern: Pattern,
+    inside: impl Fn(usize, usize) -> bool,
+) -> Mesh {
+    assert!(nx > 0 && ny > 0 && lower[0] < upper[0] && lower[1] < upper[1], "an empty grid");
+    // Ends are met exactly, and a dyadic grid on the unit square has exact coordinates.
+    let coordinate = |axis: usize, k: f64, n: usize| {
+        let t = k / n as f64;
+        lower[axis] * (1.0 - t) + upper[axis] * t
+    };
+    let point = |i: f64, j: f64| [coordinate(0, i, nx), coordinate(1, j, ny)];
+    let cells = || (0..ny).flat_map(move |j| (0..nx).map(move |i| (i, j))).filter(|&(i, j)| inside(i, j));
+
+    let mut number = vec![usize::MAX; (nx + 1) * (ny + 1)];
+    let at = |i: usize, j: usize| j * (nx + 1) + i;
+    for (i, j) in cells() {
+        for corner in [at(i, j), at(i + 1, j), at(i, j + 1), at(i + 1, j + 1)] {
+            number[corner] = 0;
+        }
+    }
+    let mut points = Vec::new();
+    for (corner, number) in number.iter_mut().enumerate().filter(|(_, number)| **number == 0) {
+        *number = points.len();
+        points.push(point((corner % (nx + 1)) as f64, (corner / (nx + 1)) as f64));
+    }
+    let mut triangles = Vec::new();
+    for (i, j) in cells() {
+        let [a, b, c, d] =
+            [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)].map(|corner| number[corner]);
+        match pattern {
+            Pattern::Right => triangles.extend([[a, b, c], [a, c, d]]),
+            Pattern::Crossed => {
+                let centre = points.len();
+                points.push(point(i as f64 + 0.5, j as f64 + 0.5));
+                triangles.extend([[a, b, centre], [b, c, centre], [c, d, centre], [d, a, centre]]);
+            }
+        }
+    }
+    Mesh::new(points, triangles).expect("a grid is a triangulation")
+}
+
+/// A disk, as `rings` rings of triangles around its centre; ring `k` has `6 k` vertices. The domain of the mesh is the
+/// polygon inscribed in the disk.
+///
+/// # Panics
+/// When `radius` is not positive or `rings` is zero.
+pub fn disk(centre: [f64; 2], radius: f64, rings: usize) -> Mesh {
+    assert!(rings > 0 && radius > 0.0, "an empty disk");
+    let first = |ring: usize| if ring == 0 { 0 } else { 1 + 3 * ring * (ring - 1) };
+    let mut points = vec![centre];
+    let mut triangles = Vec::new();
+    for ring in 1..=rings {
+        let r = radius * ring as f64 / rings as f64;
+        for k in 0..6 * ring {
+            let angle = std::f64::consts::TAU * k as f64 / (6 * ring) as f64;
+            points.push([centre[0] + r * angle.cos(), centre[1] + r * angle.sin()]);
+        }
+        let outer = |k: usize| first(ring) + k % (6 * ring);
+        let inner = |k: usize| first(ring - 1) + if ring == 1 { 0 } else { k % (6 * (ring - 1)) };
+        for sextant in 0..6 {
+            for k in 0..ring {
+                let (o, i) = (sextant * ring + k, sextant * (ring - 1) + k);
+                triangles.push([outer(o), outer(o + 1), inner(i)]);
+                if k + 1 < ring {
+                    triangles.push([outer(o + 1), inner(i + 1), inner(i)]);
+                }
+            }
+        }
+    }
+    Mesh::new(points, triangles).expect("rings make a triangulation")
+}

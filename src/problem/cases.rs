@@ -1,0 +1,153 @@
+//! Named problems whose solution is known exactly, for tests and convergence studies.
+//!
+//! Each case is given through the decoupled form of the problem: the gap `w = u1 - u2`, the action
+//! `lambda`, and either `u2` or the weighted sum `s = mu1 u1 + mu2 u2`. Displacements and loads follow from
+//! these in one place, [`ExactSolution`].
+
+mod annulus;
+mod decoupled;
+mod disk;
+mod jet;
+mod l_shape;
+mod limits;
+mod parameter;
+mod solution;
+mod strip;
+#[cfg(test)]
+mod tests;
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::sync::Arc;
+
+pub use decoupled::Interface;
+pub use parameter::{CaseError, Parameter, Range};
+pub use solution::ExactSolution;
+
+use decoupled::Decoupled;
+use parameter::{Values, listed, nearest};
+
+/// A problem with a known solution. The name in a case file stands in brackets.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Case {
+    /// Unit disk, constant data, contact in a smaller disk (`disk`).
+    Disk,
+    /// Unit square, contact in a strip, nodally exact on aligned meshes (`strip`).
+    Strip,
+    /// Unit square, contact in a disk, discontinuous action (`circle`).
+    Circle,
+    /// Unit square, neither gap nor action in an annulus, continuous action (`annulus`).
+    Annulus,
+    /// L-shape, corner singularity in the gap, biactive ring (`l-shape`).
+    LShape,
+    /// L-shape, corner singularity, nowhere in contact (`l-shape-free`).
+    LShapeFree,
+    /// Unit square, nowhere in contact (`no-contact`).
+    NoContact,
+    /// Unit square, everywhere in contact (`full-contact`).
+    FullContact,
+    /// Unit square, everywhere in contact without any action (`biactive`).
+    Biactive,
+}
+
+/// What a case file says about its case.
+struct Description {
+    name: &'static str,
+    title: &'static str,
+    letter: &'static str,
+    formulas: &'static [&'static str],
+    parameters: &'static [Parameter],
+    build: fn(&Values) -> Result<Arc<dyn Decoupled>, CaseError>,
+}
+
+impl Case {
+    /// Every case, in the order in which they are listed.
+    pub const ALL: [Self; 9] = [
+        Self::Disk,
+        Self::Strip,
+        Self::Circle,
+        Self::Annulus,
+        Self::LShape,
+        Self::LShapeFree,
+        Self::NoContact,
+        Self::FullContact,
+        Self::Biactive,
+    ];
+
+    /// Printable lines (ASCII, at most 76 columns) on the notation that all [`Case::formulas`] share.
+    pub const NOTATION: &'static [&'static str] = &[
+        "M = mu1 + mu2, m = mu1 mu2 / M, w = u1 - u2, s = mu1 u1 + mu2 u2,",
+        "u1 = (s + mu2 w)/M, u2 = (s - mu1 w)/M, u1 = g and u2 = 0 on the boundary,",
+        "f1 = -mu1 Lap u1 - lambda, f2 = -mu2 Lap u2 + lambda,",
+        "F = (mu2 f1 - mu1 f2)/M = -m Lap w - lambda, (v)_+ = max(v, 0).",
+    ];
+
+    /// The case called `name`.
+    ///
+    /// # Errors
+    /// [`CaseError::UnknownCase`], with the nearest known name.
+    pub fn from_name(name: &str) -> Result<Self, CaseError> {
+        let known = Self::ALL.into_iter().map(Self::name);
+        Self::ALL.into_iter().find(|case| case.name() == name).ok_or_else(|| CaseError::UnknownCase {
+            name: name.to_owned(),
+            nearest: nearest(name, known.clone()),
+            known: listed(known),
+        })
+    }
+
+    /// The name in case files.
+    pub fn name(self) -> &'static str {
+        self.description().name
+    }
+
+    /// What the case is about, in one line.
+    pub fn title(self) -> &'static str {
+        self.description().title
+    }
+
+    /// The letter under which the mathematical notes list the case: `B` to `H3`.
+    pub fn letter(self) -> &'static str {
+        self.description().letter
+    }
+
+    /// The solution and its data, as printable lines (ASCII, at most 76 columns) in [`Case::NOTATION`].
+    pub fn formulas(self) -> &'static [&'static str] {
+        self.description().formulas
+    }
+
+    /// What can be chosen: always `mu1` and `mu2`, then the parameters of the case.
+    pub fn parameters(self) -> &'static [Parameter] {
+        self.description().parameters
+    }
+
+    /// The exact solution for the given parameters; those not given have their default.
+    ///
+    /// # Errors
+    /// [`CaseError::UnknownParameter`] for a name that is not among [`Case::parameters`], and
+    /// [`CaseError::OutOfRange`] for a value outside its range, NaN included.
+    pub fn solution(self, parameters: &BTreeMap<String, f64>) -> Result<ExactSolution, CaseError> {
+        let Description { name, parameters: known, build, .. } = self.description();
+        let values = Values::new(name, known, parameters)?;
+        Ok(ExactSolution::new(values.tension(), build(&values)?))
+    }
+
+    fn description(self) -> &'static Description {
+        match self {
+            Self::Disk => &disk::DISK,
+            Self::Strip => &strip::STRIP,
+            Self::Circle => &disk::CIRCLE,
+            Self::Annulus => &annulus::ANNULUS,
+            Self::LShape => &l_shape::L_SHAPE,
+            Self::LShapeFree => &l_shape::L_SHAPE_FREE,
+            Self::NoContact => &limits::NO_CONTACT,
+            Self::FullContact => &limits::FULL_CONTACT,
+            Self::Biactive => &limits::BIACTIVE,
+        }
+    }
+}
+
+impl fmt::Display for Case {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}

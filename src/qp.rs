@@ -1,0 +1,28 @@
+//! The sparse convex quadratic program, its one sign convention, and the solvers for it.
+//!
+//! ```text
+//! minimise    1/2 x'P x + q'x
+//! subject to  A x >= b                      (multiplier y >= 0)
+//!
+//! optimal:    P x + q = A'y,   A x >= b,   y >= 0,   y_k (A x - b)_k = 0
+//! ```
+//!
+//! This is the convention everywhere: a [`QpBackend`] converts at its rim.
+
+mod backend;
+mod clarabel;
+mod contact;
+mod export;
+mod kkt;
+#[cfg(feature = "osqp")]
+mod osqp;
+mod problem;
+
+pub use self::clarabel::Clarabel;
+#[cfg(feature = "osqp")]
+pub use self::osqp::Osqp;
+pub use backend::{BackendError, QpBackend, QpOptions, QpSolution, Status};
+pub use contact::contact_qp;
+pub use export::{QpPart, write_matrix_market, write_npz, write_qps};
+pub use kkt::KktResiduals;
+pub use problem::{QpError, QpProblem};

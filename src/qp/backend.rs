@@ -1,0 +1,103 @@
+//! What a QP solver is to this crate.
+
+use thiserror::Error;
+
+use super::QpProblem;
+
+/// A solver of [`QpProblem`]s. Implement it to plug in a solver of your own: see `examples/custom_backend.rs`.
+///
+/// The problem arrives in units in which `x` and `P x + q` have size about 1, so that one absolute tolerance fits. The
+/// answer is judged by residuals recomputed elsewhere, never by the status.
+pub trait QpBackend {
+    /// The name in summaries and messages.
+    fn name(&self) -> &str;
+
+    /// Solves the problem, or stops early and says so in the [`Status`].
+    ///
+    /// # Errors
+    /// [`BackendError`] when the solver cannot run on this problem at all.
+    fn solve(&mut self, qp: &QpProblem, options: &QpOptions) -> Result<QpSolution, BackendError>;
+}
+
+/// What is asked of a backend.
+#[derive(Debug, Clone)]
+pub struct QpOptions {
+    /// Largest residual of the optimality conditions, in the problem's units (size 1).
+    pub tolerance: f64,
+    /// Where to stop at the latest; `None`: the backend's own limit.
+    pub max_iterations: Option<usize>,
+    /// Seconds after which to stop; `None`: no limit.
+    pub time_limit: Option<f64>,
+    /// A guess `(x, y)`, for backends that can use one.
+    pub warm_start: Option<(Vec<f64>, Vec<f64>)>,
+}
+
+impl Default for QpOptions {
+    fn default() -> Self {
+        Self { tolerance: 1e-8, max_iterations: None, time_limit: None, warm_start: None }
+    }
+}
+
+/// What a backend returns: its last iterate, whatever the status.
+#[derive(Debug, Clone)]
+pub struct QpSolution {
+    /// Primal point. Shape: `variables`.
+    pub x: Vec<f64>,
+    /// Multipliers of `A x >= b`, non-negative at an optimum. Shape: `constraints`.
+    pub y: Vec<f64>,
+    /// Why the backend stopped.
+    pub status: Status,
+    /// Iterations made.
+    pub iterations: usize,
+    /// Seconds spent before the first iteration (analysis, factorisation).
+    pub setup_seconds: f64,
+    /// Seconds spent iterating.
+    pub solve_seconds: f64,
+}
+
+/// Why a solver stopped, in its own view. Whether the result is accepted is decided by residuals.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Status {
+    /// It reached the tolerance.
+    Solved,
+    /// It reached a looser tolerance.
+    Inaccurate,
+    /// It reached the limit of iterations.
+    IterationLimit,
+    /// It reached the limit of time.
+    TimeLimit,
+    /// It made no more progress.
+    Stalled,
+    /// It holds that no point satisfies the constraints.
+    Infeasible,
+    /// It holds that the objective has no lower bound.
+    Unbounded,
+    /// Its arithmetic broke down.
+    NumericalError,
+}
+
+impl Status {
+    /// The name in `summary.json`.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Solved => "solved",
+            Self::Inaccurate => "inaccurate",
+            Self::IterationLimit => "iteration_limit",
+            Self::TimeLimit => "time_limit",
+            Self::Stalled => "stalled",
+            Self::Infeasible => "infeasible",
+            Self::Unbounded => "unbounded",
+            Self::NumericalError => "numerical_error",
+        }
+    }
+}
+
+/// A backend cannot run on a problem.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[error("{backend} cannot run: {reason}")]
+pub struct BackendError {
+    /// The backend's name.
+    pub backend: String,
+    /// What it says.
+    pub reason: String,
+}

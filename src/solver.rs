@@ -1,0 +1,101 @@
+//! Solvers of the reduced discrete problem (3.4).
+
+mod cholesky;
+mod decoupled;
+mod polish;
+mod qp_solver;
+
+pub use polish::PolishReport;
+pub use qp_solver::QpSolver;
+
+use thiserror::Error;
+
+use crate::discretization::Discretization;
+use crate::qp::{BackendError, Status};
+
+/// Anything that solves (3.4): a [`QpBackend`](crate::qp::QpBackend) by way of [`QpSolver`], or a method of its own.
+pub trait ContactSolver {
+    /// The name in summaries and messages.
+    fn name(&self) -> &str;
+
+    /// Solves the problem, or stops early and says so in the statistics.
+    ///
+    /// # Errors
+    /// [`SolverError`] when it cannot run at all.
+    fn solve(&mut self, d: &Discretization, options: &SolverOptions) -> Result<Candidate, SolverError>;
+}
+
+/// What is asked of a solver.
+#[derive(Debug, Clone)]
+pub struct SolverOptions {
+    /// Largest residual of the optimality conditions, relative to the data ([`Scales`](crate::discretization::Scales)).
+    pub tolerance: f64,
+    /// Where to stop at the latest; `None`: the solver's own limit.
+    pub max_iterations: Option<usize>,
+    /// Seconds after which to stop; `None`: no limit.
+    pub time_limit: Option<f64>,
+    /// Whether to make the result exact by solving for its contact set.
+    pub polish: bool,
+    /// A result of a nearby problem on the same mesh to start from, for solvers that can.
+    pub warm_start: Option<Candidate>,
+}
+
+impl Default for SolverOptions {
+    fn default() -> Self {
+        Self { tolerance: 1e-8, max_iterations: None, time_limit: None, polish: true, warm_start: None }
+    }
+}
+
+impl SolverOptions {
+    pub(crate) fn check(&self) -> Result<(), SolverError> {
+        if !(self.tolerance > 0.0 && self.tolerance < 1.0) {
+            return Err(SolverError::Tolerance(self.tolerance));
+        }
+        match self.time_limit {
+            Some(seconds) if !(seconds > 0.0 && seconds.is_finite()) => Err(SolverError::TimeLimit(seconds)),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// What a solver returns: displacements and multipliers that nobody has checked yet.
+#[derive(Debug, Clone)]
+pub struct Candidate {
+    /// `[u1, u2]` over vertices, boundary values included.
+    pub displacement: [Vec<f64>; 2],
+    /// `y_a = lambda_a |D_a|` over unknowns. Unit: force.
+    pub multiplier: Vec<f64>,
+    /// How it was found.
+    pub statistics: Statistics,
+}
+
+/// How a candidate was found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Statistics {
+    /// The solver's name.
+    pub solver: String,
+    /// Why it stopped, in its own view.
+    pub status: Status,
+    /// Iterations made.
+    pub iterations: usize,
+    /// Seconds spent before the first iteration.
+    pub setup_seconds: f64,
+    /// Seconds spent iterating, the polish included.
+    pub solve_seconds: f64,
+    /// What the polish did; `None` when it was not asked for.
+    pub polish: Option<PolishReport>,
+}
+
+/// A solver cannot run.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum SolverError {
+    /// The quadratic programming backend cannot.
+    #[error(transparent)]
+    Backend(#[from] BackendError),
+    /// The tolerance is out of range.
+    #[error("the tolerance is {0}: give a number between 0 and 1")]
+    Tolerance(f64),
+    /// The time limit is out of range.
+    #[error("the time limit is {0} seconds: give a positive number")]
+    TimeLimit(f64),
+}

@@ -1,0 +1,129 @@
+//! Any QP backend as a solver of the contact problem.
+
+use std::time::Instant;
+
+use super::polish::polish;
+use super::{Candidate, ContactSolver, PolishReport, SolverError, SolverOptions, Statistics};
+use crate::discretization::Discretization;
+use crate::qp::{
+    BackendError, KktResiduals, QpBackend, QpOptions, QpProblem, QpSolution, Status, contact_qp,
+};
+
+/// Poses (3.4) as a [`QpProblem`], has it solved by a backend, and polishes the answer.
+pub struct QpSolver {
+    backend: Box<dyn QpBackend>,
+}
+
+impl QpSolver {
+    /// Wraps a backend.
+    pub fn new(backend: impl QpBackend + 'static) -> Self {
+        Self { backend: Box::new(backend) }
+    }
+}
+
+impl ContactSolver for QpSolver {
+    fn name(&self) -> &str {
+        self.backend.name()
+    }
+
+    fn solve(&mut self, d: &Discretization, options: &SolverOptions) -> Result<Candidate, SolverError> {
+        options.check()?;
+        let start = Instant::now();
+        let qp = contact_qp(d);
+        let posing = start.elapsed().as_secs_f64();
+        let solution = solve_nondimensional(self.backend.as_mut(), &qp, &qp_options(d, options))?;
+        let (x1, x2) = solution.x.split_at(d.interior().len());
+        let mut candidate = Candidate {
+            displacement: [d.extend(x1, |a| d.height()[a]), d.extend(x2, |_| 0.0)],
+            multiplier: solution.y,
+            statistics: Statistics {
+                solver: self.name().into(),
+                status: solution.status,
+                iterations: solution.iterations,
+                setup_seconds: posing + solution.setup_seconds,
+                solve_seconds: 0.0,
+                polish: None,
+            },
+        };
+        if options.polish {
+            candidate.statistics.polish = polish_if_better(d, &qp, &mut candidate);
+        }
+        candidate.statistics.solve_seconds =
+            start.elapsed().as_secs_f64() - candidate.statistics.setup_seconds;
+        Ok(candidate)
+    }
+}
+
+fn qp_options(d: &Discretization, options: &SolverOptions) -> QpOptions {
+    let warm_start =
+        options.warm_start.as_ref().map(|start| (unknowns(d, &start.displacement), start.multiplier.clone()));
+    QpOptions {
+        tolerance: options.tolerance,
+        max_iterations: options.max_iterations,
+        time_limit: options.time_limit,
+        warm_start,
+    }
+}
+
+/// `x = (u1, u2)` at the interior vertices.
+fn unknowns(d: &Discretization, displacement: &[Vec<f64>; 2]) -> Vec<f64> {
+    displacement.iter().flat_map(|u| d.interior().iter().map(|&a| u[a])).collect()
+}
+
+/// Has the problem solved in units of size 1, so that one tolerance fits every mesh (`q ~ h^2`) and all data.
+fn solve_nondimensional(
+    backend: &mut dyn QpBackend,
+    qp: &QpProblem,
+    options: &QpOptions,
+) -> Result<QpSolution, BackendError> {
+    if qp.q().is_empty() {
+        return Ok(without_unknowns());
+    }
+    let scaled = |values: &[f64], scale: f64| values.iter().map(|value| value * scale).collect::<Vec<_>>();
+    let (primal, dual) = (qp.primal_scale(), qp.dual_scale());
+    let warm_start = options
+        .warm_start
+        .as_ref()
+        .map(|(x, y)| (scaled(x, primal.recip()), scaled(y, dual.recip())))
+        .filter(|(x, y)| x.len() == qp.q().len() && y.len() == qp.b().len());
+    let solution = backend.solve(&qp.nondimensional(), &QpOptions { warm_start, ..options.clone() })?;
+    if solution.x.len() != qp.q().len() || solution.y.len() != qp.b().len() {
+        let reason = "it returned vectors of the wrong length".into();
+        return Err(BackendError { backend: backend.name().into(), reason });
+    }
+    Ok(QpSolution { x: scaled(&solution.x, primal), y: scaled(&solution.y, dual), ..solution })
+}
+
+/// A mesh without interior vertices leaves nothing to solve, which some backends do not understand.
+fn without_unknowns() -> QpSolution {
+    QpSolution {
+        x: vec![],
+        y: vec![],
+        status: Status::Solved,
+        iterations: 0,
+        setup_seconds: 0.0,
+        solve_seconds: 0.0,
+    }
+}
+
+/// Polishes the candidate and keeps the result if its residuals are smaller. `None` when there is none.
+fn polish_if_better(d: &Discretization, qp: &QpProblem, candidate: &mut Candidate) -> Option<PolishReport> {
+    let residual = |displacement: &[Vec<f64>; 2], multiplier: &[f64]| {
+        KktResiduals::new(qp, &unknowns(d, displacement), multiplier).worst()
+    };
+    let polished = polish(d, candidate)?;
+    let residual_before = residual(&candidate.displacement, &candidate.multiplier);
+    let residual_after = residual(&polished.displacement, &polished.multiplier);
+    let kept = residual_after < residual_before;
+    if kept {
+        candidate.displacement = polished.displacement;
+        candidate.multiplier = polished.multiplier;
+    }
+    Some(PolishReport {
+        kept,
+        repairs: polished.repairs,
+        settled: polished.settled,
+        residual_before,
+        residual_after,
+    })
+}
