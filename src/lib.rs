@@ -10,5 +10,8 @@ pub mod discretization;
 pub mod qp;
 pub mod solver;
 pub mod action;
+pub mod output;
+#[cfg(feature = "cli")]
+pub mod cli;
 
 pub use sprs;

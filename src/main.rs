@@ -1,1 +1,7 @@
-fn main() {}
+//! The program `membranes`.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    membrane_contact::cli::main()
+}

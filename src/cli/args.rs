@@ -1,0 +1,124 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+use super::case_file::BackendName;
+
+/// Where results go when no folder is named: a folder of this one, called like the case file.
+const OUTPUT: &str = "out";
+
+#[derive(Debug, Parser)]
+#[command(
+    name = "membranes",
+    version,
+    about = "Unilateral contact between two elastic membranes, solved by finite elements and certified",
+    after_help = "\
+A first run:
+  membranes cases strip > strip.toml     a complete case file, with its formulas
+  membranes solve strip.toml             writes out/strip/{solution.vtu, summary.json, membranes.png}
+
+Open solution.vtu in ParaView (or meshio, PyVista), membranes.png anywhere.
+Exit codes: 0 certified; 1 ran, but not certified; 2 bad input or usage."
+)]
+pub(super) struct Arguments {
+    #[command(subcommand)]
+    pub(super) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(super) enum Command {
+    /// Solve a case and write solution.vtu, summary.json, membranes.png
+    Solve(SolveArguments),
+    /// Solve a case with every backend, with and without polish, and show every residual
+    Check(CheckArguments),
+    /// Write the quadratic program of a case for other solvers
+    Export(ExportArguments),
+    /// List the built-in exact cases with their formulas, or print one as a case file
+    Cases(CasesArguments),
+}
+
+#[derive(Debug, Args)]
+pub(super) struct SolveArguments {
+    #[command(flatten)]
+    pub(super) case: CaseArguments,
+    /// Solver, in place of the case file's [clarabel, osqp]
+    #[arg(long, value_name = "NAME")]
+    pub(super) backend: Option<BackendName>,
+    /// Folder for the results [default: out/CASE]
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: Option<PathBuf>,
+    /// Largest relative residual, in place of the case file's
+    #[arg(long, value_name = "T")]
+    pub(super) tolerance: Option<f64>,
+    /// Leave the backend's answer as it is
+    #[arg(long)]
+    pub(super) no_polish: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct CheckArguments {
+    #[command(flatten)]
+    pub(super) case: CaseArguments,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ExportArguments {
+    #[command(flatten)]
+    pub(super) case: CaseArguments,
+    /// File format
+    #[arg(long, value_enum)]
+    pub(super) format: Format,
+    /// Folder for the files [default: out/CASE]
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: Option<PathBuf>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum Format {
+    /// problem.qps, for HiGHS, Gurobi, CPLEX, ... (rename it to .mps for HiGHS)
+    Qps,
+    /// problem.npz, for numpy and scipy
+    Npz,
+    /// problem_P.mtx, problem_A.mtx, problem_q.mtx, problem_b.mtx: MatrixMarket
+    Mtx,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct CasesArguments {
+    /// Print this case as a complete case file
+    #[arg(value_name = "NAME")]
+    pub(super) name: Option<String>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct CaseArguments {
+    /// The case file (TOML)
+    #[arg(value_name = "CASE.toml")]
+    pub(super) path: PathBuf,
+    /// Further uniform refinements of the mesh
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(super) refine: u32,
+    /// No output on the terminal but errors
+    #[arg(long, short)]
+    pub(super) quiet: bool,
+}
+
+impl CaseArguments {
+    /// The folder for results: the one named, else `out/` and the name of the case file without its ending.
+    pub(super) fn output_folder(&self, named: Option<&PathBuf>) -> PathBuf {
+        let stem = self.path.file_stem().unwrap_or(self.path.as_os_str());
+        named.cloned().unwrap_or_else(|| PathBuf::from(OUTPUT).join(stem))
+    }
+}
+
+/// What clap has to say, without its paragraphs on usage.
+pub(super) fn one_line(error: &clap::Error) -> String {
+    let text = error.to_string();
+    let said = text.split("\n\nUsage:").next().unwrap_or(&text).split("\n\nFor more information").next();
+    let words: Vec<&str> = said.unwrap_or(&text).split_whitespace().collect();
+    let message = words.join(" ");
+    let message = message.strip_prefix("error: ").unwrap_or(&message);
+    format!("{message}; see `membranes --help`")
+}

@@ -1,0 +1,89 @@
+//! `membranes check`: every residual, all backends, side by side.
+
+use super::args::CheckArguments;
+use super::case_file::BackendName;
+use super::progress::Progress;
+use super::setup::{Setup, options, solver};
+use super::terminal::{grouped, print};
+use super::{Failure, SolverSettings};
+use crate::action::{ContactSolution, Rejected, Residuals, certify};
+use crate::discretization::Discretization;
+
+/// One backend's result.
+struct Column {
+    heading: String,
+    result: Result<ContactSolution, Box<Rejected>>,
+}
+
+pub(super) fn run(arguments: &CheckArguments) -> Result<(), Failure> {
+    let progress = Progress::new(arguments.case.quiet);
+    let setup = Setup::new(&arguments.case, &progress)?;
+    let (d, _) = setup.discretize(&progress)?;
+    let mut columns = Vec::new();
+    for backend in BackendName::ALL.into_iter().filter(|backend| backend.is_built()) {
+        for polish in [true, false] {
+            let settings = SolverSettings { backend, polish, ..setup.case.solver.clone() };
+            columns.push(column(&setup.name, &d, &settings, &progress)?);
+        }
+    }
+    drop(progress);
+    if !arguments.case.quiet {
+        let unknowns = grouped(2 * d.interior().len());
+        let title = format!(
+            "{}: {unknowns} unknowns, tolerance {:.0e}\n",
+            setup.case.title, setup.case.solver.tolerance
+        );
+        print(&(title + &table(&columns)));
+    }
+    // The unpolished answers are shown for comparison: only the polished ones have to be certified.
+    match columns.iter().step_by(2).find_map(|column| column.result.as_ref().err()) {
+        None => Ok(()),
+        Some(rejected) => Err(Failure::NotCertified(format!("{}: {rejected}", setup.name))),
+    }
+}
+
+fn column(
+    name: &str,
+    d: &Discretization,
+    settings: &SolverSettings,
+    progress: &Progress,
+) -> Result<Column, Failure> {
+    let polish = if settings.polish { "polished" } else { "as it is" };
+    let backend = settings.backend.as_str();
+    progress.stage(format!("{backend} ({polish})"));
+    let candidate = solver(settings.backend)
+        .solve(d, &options(settings))
+        .map_err(|error| Failure::NotCertified(format!("{name}: {error}")))?;
+    Ok(Column { heading: format!("{backend}\n{polish}"), result: certify(d, candidate, settings.tolerance) })
+}
+
+/// A row for each residual, a column for each result.
+fn table(columns: &[Column]) -> String {
+    let residuals: Vec<Option<&Residuals>> = columns
+        .iter()
+        .map(|column| match &column.result {
+            Ok(solution) => Some(solution.residuals()),
+            Err(rejected) => rejected.residuals.as_ref(),
+        })
+        .collect();
+    let row = |name: &str, cell: &dyn Fn(usize) -> String| {
+        let cells: String = (0..columns.len()).map(|k| format!(" {:>12}", cell(k))).collect();
+        format!("  {name:22}{cells}\n")
+    };
+    let heading = |line: usize| row("", &|k| columns[k].heading.lines().nth(line).unwrap_or("").into());
+    let solved = |k: usize, value: &dyn Fn(&ContactSolution) -> String| {
+        columns[k].result.as_ref().map_or_else(|_| "-".into(), value)
+    };
+    let mut text = heading(0) + &heading(1);
+    for (index, (name, _)) in Residuals::default().named().into_iter().enumerate() {
+        text +=
+            &row(name, &|k| residuals[k].map_or("-".into(), |r| format!("{:.1e}", r.named()[index].1.value)));
+    }
+    text += &row("(overlap)", &|k| residuals[k].map_or("-".into(), |r| format!("{:.1e}", r.overlap)));
+    text += &row("certified", &|k| if columns[k].result.is_ok() { "yes".into() } else { "no".into() });
+    text += &row("energy", &|k| solved(k, &|s| format!("{:.6}", s.energy())));
+    text += &row("contact vertices", &|k| {
+        solved(k, &|s| grouped(s.contact().iter().filter(|&&contact| contact).count()))
+    });
+    text + &row("total force", &|k| solved(k, &|s| format!("{:.6}", s.total_force())))
+}

@@ -1,0 +1,160 @@
+//! A table of a case file, read key by key: what nobody has asked for is unknown.
+
+use toml::{Table, Value};
+
+use super::Failure;
+
+/// The tables of a case file, each read once by its keys; [`finish`](Section::finish) refuses the others.
+pub(super) struct Section {
+    /// The case file, for messages.
+    file: String,
+    /// The table's name with a dot, or nothing at the top.
+    prefix: String,
+    table: Table,
+    known: Vec<&'static str>,
+}
+
+impl Section {
+    pub(super) fn top(file: &str, text: &str) -> Result<Self, Failure> {
+        let table = text.parse::<Table>().map_err(|error| {
+            let place = error.span().map_or_else(String::new, |span| place(text, span.start));
+            Failure::Input(format!("{file}{place}: {}", error.message().replace('\n', "; ")))
+        })?;
+        Ok(Self { file: file.into(), prefix: String::new(), table, known: Vec::new() })
+    }
+
+    /// A table in this one; an empty one when it is missing.
+    pub(super) fn section(&mut self, key: &'static str) -> Result<Self, Failure> {
+        let table = match self.take(key) {
+            None => Table::new(),
+            Some(Value::Table(table)) => table,
+            Some(_) => {
+                return Err(self.error(key, format!("must be a table: write [{key}] on a line of its own")));
+            }
+        };
+        let prefix = format!("{}{key}.", self.prefix);
+        Ok(Self { file: self.file.clone(), prefix, table, known: Vec::new() })
+    }
+
+    /// The value of a key that this table may have.
+    pub(super) fn take(&mut self, key: &'static str) -> Option<Value> {
+        self.known.push(key);
+        self.table.remove(key)
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.table.is_empty()
+    }
+
+    /// All remaining keys as numbers, whatever they are called.
+    pub(super) fn all_numbers(&mut self) -> Result<Vec<(String, f64)>, Failure> {
+        std::mem::take(&mut self.table)
+            .into_iter()
+            .map(|(key, value)| match as_number(&value) {
+                Some(number) => Ok((key, number)),
+                None => Err(self.error(&key, "must be a number")),
+            })
+            .collect()
+    }
+
+    pub(super) fn number(&mut self, key: &'static str) -> Result<Option<f64>, Failure> {
+        self.take(key)
+            .map(|value| as_number(&value).ok_or_else(|| self.error(key, "must be a number")))
+            .transpose()
+    }
+
+    /// A whole number of at least `least`.
+    pub(super) fn count(&mut self, key: &'static str, least: usize) -> Result<Option<usize>, Failure> {
+        let must = format!("must be a whole number, at least {least}");
+        self.take(key)
+            .map(|value| {
+                let count = value.as_integer().and_then(|count| usize::try_from(count).ok());
+                count.filter(|&count| count >= least).ok_or_else(|| self.error(key, must))
+            })
+            .transpose()
+    }
+
+    pub(super) fn flag(&mut self, key: &'static str) -> Result<Option<bool>, Failure> {
+        self.take(key)
+            .map(|value| value.as_bool().ok_or_else(|| self.error(key, "must be true or false")))
+            .transpose()
+    }
+
+    pub(super) fn text(&mut self, key: &'static str) -> Result<Option<String>, Failure> {
+        self.take(key)
+            .map(|value| match value {
+                Value::String(text) => Ok(text),
+                _ => Err(self.error(key, "must be a text in quotes")),
+            })
+            .transpose()
+    }
+
+    /// A point, `[x, y]`.
+    pub(super) fn point(&mut self, key: &'static str) -> Result<Option<[f64; 2]>, Failure> {
+        self.take(key)
+            .map(|value| point(&value).ok_or_else(|| self.error(key, "must be a point [x, y]")))
+            .transpose()
+    }
+
+    /// A list of points.
+    pub(super) fn points(&mut self, key: &'static str) -> Result<Option<Vec<[f64; 2]>>, Failure> {
+        self.take(key)
+            .map(|value| {
+                points(&value).ok_or_else(|| self.error(key, "must be a list of points [[x, y], ...]"))
+            })
+            .transpose()
+    }
+
+    /// A list of lists of points.
+    pub(super) fn point_lists(&mut self, key: &'static str) -> Result<Option<Vec<Vec<[f64; 2]>>>, Failure> {
+        let lists = |value: &Value| value.as_array()?.iter().map(points).collect::<Option<Vec<_>>>();
+        let must = "must be a list of lists of points [[[x, y], ...], ...]";
+        self.take(key).map(|value| lists(&value).ok_or_else(|| self.error(key, must))).transpose()
+    }
+
+    /// Refuses keys that nobody has asked for.
+    pub(super) fn finish(self) -> Result<(), Failure> {
+        match self.table.keys().next() {
+            None => Ok(()),
+            Some(key) if self.known.is_empty() => Err(self.error(key, "has no place here: remove it")),
+            Some(key) => {
+                let nearest = self.known.iter().min_by_key(|known| strsim::damerau_levenshtein(known, key));
+                let nearest = nearest.expect("there are known keys");
+                Err(self.error(key, format!("is no key of a case file; the nearest is `{nearest}`")))
+            }
+        }
+    }
+
+    /// An error about a key of this table.
+    pub(super) fn error(&self, key: &str, problem: impl std::fmt::Display) -> Failure {
+        Failure::Input(format!("{}: `{}{key}` {problem}", self.file, self.prefix))
+    }
+
+    /// An error about the table as a whole.
+    pub(super) fn table_error(&self, problem: impl std::fmt::Display) -> Failure {
+        Failure::Input(format!("{}: {problem}", self.file))
+    }
+}
+
+pub(super) fn as_number(value: &Value) -> Option<f64> {
+    value.as_float().or_else(|| value.as_integer().map(|integer| integer as f64))
+}
+
+fn point(value: &Value) -> Option<[f64; 2]> {
+    match value.as_array()?.as_slice() {
+        [x, y] => Some([as_number(x)?, as_number(y)?]),
+        _ => None,
+    }
+}
+
+fn points(value: &Value) -> Option<Vec<[f64; 2]>> {
+    value.as_array()?.iter().map(point).collect()
+}
+
+/// ` line L, column C` of a byte of the text.
+fn place(text: &str, byte: usize) -> String {
+    let before = text.get(..byte).unwrap_or(text);
+    let line = before.matches('\n').count() + 1;
+    let column = before.rsplit('\n').next().map_or(0, |last| last.chars().count()) + 1;
+    format!(" line {line}, column {column}")
+}

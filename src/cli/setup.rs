@@ -1,0 +1,107 @@
+//! From a case file to a mesh, a discrete problem, and a solver.
+
+use std::path::Path;
+use std::time::Instant;
+
+use super::args::CaseArguments;
+use super::case_file::{BackendName, CaseFile, MeshSource};
+use super::progress::Progress;
+use super::terminal::grouped;
+use super::{Failure, SolverSettings};
+use crate::discretization::Discretization;
+use crate::mesh::{Mesh, generate};
+use crate::output::{Seconds, WriteSeek, write_atomically};
+use crate::qp::Clarabel;
+use crate::solver::{ContactSolver, QpSolver, SolverOptions};
+
+/// More vertices than this are refused before they are made: see the limit of the generators.
+const MAX_VERTICES: usize = 50_000_000;
+
+/// The case and its mesh.
+pub(super) struct Setup {
+    pub(super) name: String,
+    pub(super) case: CaseFile,
+    pub(super) mesh: Mesh,
+    pub(super) seconds: Seconds,
+}
+
+impl Setup {
+    /// Reads the case file and makes its mesh.
+    pub(super) fn new(arguments: &CaseArguments, progress: &Progress) -> Result<Self, Failure> {
+        let name = arguments.path.display().to_string();
+        let case = CaseFile::read(&arguments.path)?;
+        progress.stage("making the mesh");
+        let start = Instant::now();
+        let mesh = make_mesh(&name, &case, arguments.refine as usize)?;
+        let seconds = Seconds { mesh: start.elapsed().as_secs_f64(), ..Seconds::default() };
+        Ok(Self { name, case, mesh, seconds })
+    }
+
+    /// Assembles the discrete problem, and says how long it took.
+    pub(super) fn discretize(&self, progress: &Progress) -> Result<(Discretization<'_>, Seconds), Failure> {
+        progress.stage(format!("assembling on {} vertices", grouped(self.mesh.points().len())));
+        let start = Instant::now();
+        let d = Discretization::new(&self.case.problem, &self.mesh)
+            .map_err(|error| Failure::Input(format!("{}: {error}", self.name)))?;
+        Ok((d, Seconds { assembly: start.elapsed().as_secs_f64(), ..self.seconds }))
+    }
+}
+
+fn make_mesh(name: &str, case: &CaseFile, further: usize) -> Result<Mesh, Failure> {
+    let mut mesh = match &case.mesh {
+        MeshSource::File(path) => {
+            Mesh::read_gmsh(path).map_err(|error| Failure::Input(format!("{}: {error}", path.display())))?
+        }
+        MeshSource::Generator(domain, size) => generate(domain, *size)
+            .map_err(|error| Failure::Input(format!("{name}: [mesh], [domain]: {error}")))?,
+    };
+    for _ in 0..case.refine.saturating_add(further) {
+        if mesh.points().len() > MAX_VERTICES / 4 {
+            let limit = grouped(MAX_VERTICES);
+            return Err(Failure::Input(format!(
+                "{name}: refinement leads beyond {limit} vertices: refine less"
+            )));
+        }
+        mesh = mesh.refine().mesh;
+    }
+    Ok(mesh)
+}
+
+/// The solver of this name.
+pub(super) fn solver(name: BackendName) -> Box<dyn ContactSolver> {
+    match name {
+        BackendName::Clarabel => Box::new(QpSolver::new(Clarabel)),
+        #[cfg(feature = "osqp")]
+        BackendName::Osqp => Box::new(QpSolver::new(crate::qp::Osqp)),
+        #[cfg(not(feature = "osqp"))]
+        BackendName::Osqp => unreachable!("the name is refused where it is parsed"),
+    }
+}
+
+/// What the settings ask of a solver.
+pub(super) fn options(settings: &SolverSettings) -> SolverOptions {
+    SolverOptions {
+        tolerance: settings.tolerance,
+        max_iterations: settings.max_iterations,
+        time_limit: settings.time_limit,
+        polish: settings.polish,
+        warm_start: None,
+    }
+}
+
+/// Makes the folder for results.
+pub(super) fn make_folder(folder: &Path) -> Result<(), Failure> {
+    std::fs::create_dir_all(folder).map_err(|error| cannot_write(folder, &error))
+}
+
+/// Writes a result, whole or not at all.
+pub(super) fn write_file(
+    path: &Path,
+    write: impl FnOnce(&mut (dyn WriteSeek + '_)) -> std::io::Result<()>,
+) -> Result<(), Failure> {
+    write_atomically(path, write).map_err(|error| cannot_write(path, &error))
+}
+
+fn cannot_write(path: &Path, error: &std::io::Error) -> Failure {
+    Failure::Input(format!("{}: cannot write: {error}; name another folder with --out", path.display()))
+}

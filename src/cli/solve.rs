@@ -1,0 +1,168 @@
+//! `membranes solve`.
+
+use std::path::Path;
+use std::time::Instant;
+
+use super::Failure;
+use super::args::SolveArguments;
+use super::progress::Progress;
+use super::setup::{Setup, make_folder, options, solver, write_file};
+use super::terminal::{fields, grouped, print};
+use crate::action::{ContactSolution, certify};
+use crate::discretization::Discretization;
+use crate::output::picture::{Picture, render};
+use crate::output::{Seconds, Summary, write_vtu};
+use crate::solver::PolishReport;
+
+/// The files that hold a solution: present only when it is certified.
+const SOLUTION: &str = "solution.vtu";
+const PICTURE: &str = "membranes.png";
+const SUMMARY: &str = "summary.json";
+
+pub(super) fn run(arguments: &SolveArguments) -> Result<(), Failure> {
+    let progress = Progress::new(arguments.case.quiet);
+    let mut setup = Setup::new(&arguments.case, &progress)?;
+    override_settings(&mut setup, arguments)?;
+    let settings = &setup.case.solver;
+    let (d, seconds) = setup.discretize(&progress)?;
+
+    progress.stage(format!(
+        "{} solves for {} unknowns",
+        settings.backend.as_str(),
+        grouped(2 * d.interior().len())
+    ));
+    let candidate = solver(settings.backend)
+        .solve(&d, &options(settings))
+        .map_err(|error| Failure::NotCertified(format!("{}: {error}", setup.name)))?;
+    let polish = candidate.statistics.polish;
+    let result = certify(&d, candidate, settings.tolerance);
+
+    let folder = arguments.case.output_folder(arguments.out.as_ref());
+    make_folder(&folder)?;
+    let title = &setup.case.title;
+    match result {
+        Ok(solution) => {
+            progress.stage("writing the results");
+            let start = Instant::now();
+            write_solution(&folder, title, &d, &solution)?;
+            let seconds = Seconds { output: start.elapsed().as_secs_f64(), ..seconds };
+            let summary = Summary::new(title, &d, settings.tolerance, Ok(&solution), seconds);
+            write_file(&folder.join(SUMMARY), |out| summary.write(out))?;
+            drop(progress);
+            if !arguments.case.quiet {
+                print(&table(&summary, polish, &folder));
+            }
+            Ok(())
+        }
+        Err(rejected) => {
+            // What an earlier run left is not the solution of this one.
+            for name in [SOLUTION, PICTURE] {
+                let _ = std::fs::remove_file(folder.join(name));
+            }
+            let summary = Summary::new(title, &d, settings.tolerance, Err(&rejected), seconds);
+            write_file(&folder.join(SUMMARY), |out| summary.write(out))?;
+            let status = rejected.statistics.status.as_str();
+            let remedy = "allow more iterations or time, or a larger tolerance, or keep the polish on";
+            Err(Failure::NotCertified(format!("{}: {rejected} (status {status}); {remedy}", setup.name)))
+        }
+    }
+}
+
+/// Arguments come before the case file.
+fn override_settings(setup: &mut Setup, arguments: &SolveArguments) -> Result<(), Failure> {
+    let settings = &mut setup.case.solver;
+    if let Some(backend) = arguments.backend {
+        settings.backend = backend;
+    }
+    if let Some(tolerance) = arguments.tolerance {
+        if !(tolerance > 0.0 && tolerance < 1.0) {
+            return Err(Failure::Input(format!(
+                "--tolerance {tolerance} is out of range: choose between 0 and 1"
+            )));
+        }
+        settings.tolerance = tolerance;
+    }
+    settings.polish &= !arguments.no_polish;
+    Ok(())
+}
+
+fn write_solution(
+    folder: &Path,
+    title: &str,
+    d: &Discretization,
+    solution: &ContactSolution,
+) -> Result<(), Failure> {
+    write_file(&folder.join(SOLUTION), |out| write_vtu(d.mesh(), solution, out))?;
+    let [upper, lower] = solution.displacement();
+    let picture = Picture {
+        title,
+        points: d.mesh().points(),
+        triangles: d.mesh().triangles(),
+        upper,
+        lower,
+        lambda: solution.lambda(),
+        contact: solution.contact(),
+    };
+    let png = render(&picture).map_err(|error| Failure::Input(format!("{PICTURE}: {error}")))?;
+    write_file(&folder.join(PICTURE), |out| out.write_all(&png))
+}
+
+/// The summary for the eye.
+fn table(summary: &Summary, polish: Option<PolishReport>, folder: &Path) -> String {
+    let number = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:.8}"));
+    let interior = summary.unknowns / 2;
+    let contact = summary.contact_vertices.unwrap_or(0);
+    let worst = summary.residuals.as_ref().map_or(f64::NAN, |r| {
+        [r.stationarity, r.primal, r.dual_sign, r.complementarity, r.action_mismatch, r.dual_mismatch]
+            .into_iter()
+            .fold(r.variational_inequality, f64::max)
+    });
+    let seconds = &summary.seconds;
+    let rows = [
+        (
+            "mesh",
+            format!(
+                "{} vertices, {} triangles, smallest angle {:.1} degrees",
+                grouped(summary.vertices),
+                grouped(summary.triangles),
+                summary.min_angle
+            ),
+        ),
+        ("solver", format!("{}: {} in {} iterations", summary.backend, summary.status, summary.iterations)),
+        ("polish", polish_line(polish)),
+        ("certified", format!("largest residual {worst:.1e} (tolerance {:.0e})", summary.tolerance)),
+        ("energy", number(summary.energy)),
+        (
+            "contact",
+            format!(
+                "{} of {} interior vertices, area {:.6}",
+                grouped(contact),
+                grouped(interior),
+                summary.contact_area.unwrap_or(0.0)
+            ),
+        ),
+        ("total force", number(summary.total_force)),
+        (
+            "seconds",
+            format!(
+                "mesh {:.2}, assembly {:.2}, setup {:.2}, solve {:.2}, output {:.2}",
+                seconds.mesh, seconds.assembly, seconds.setup, seconds.solve, seconds.output
+            ),
+        ),
+        ("files", format!("{}/{{{SOLUTION}, {SUMMARY}, {PICTURE}}}", folder.display())),
+    ];
+    format!("{}\n{}", summary.title, fields(&rows))
+}
+
+fn polish_line(polish: Option<PolishReport>) -> String {
+    match polish {
+        None => "off".into(),
+        Some(PolishReport { kept, repairs, residual_before, residual_after, .. }) => {
+            let verdict = if kept { "kept" } else { "not kept" };
+            let repairs = if repairs == 1 { "1 repair".into() } else { format!("{repairs} repairs") };
+            format!(
+                "{verdict}, {repairs} of the contact set, residual {residual_before:.1e} -> {residual_after:.1e}"
+            )
+        }
+    }
+}

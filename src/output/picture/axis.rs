@@ -1,0 +1,139 @@
+//! Axes: the range of one quantity, its power of ten, and round ticks.
+
+/// Magnitudes below this are drawn as zero: smaller ones lose their digits in `f64`.
+const SMALLEST: f64 = 1e-300;
+
+/// A range narrower than this, relative to its magnitude, holds rounding errors only.
+const FLAT: f64 = 1e-12;
+
+/// The range of a quantity, in units of a power of ten chosen so that tick labels stay short.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Axis {
+    low: f64,
+    high: f64,
+    exponent: i32,
+    unit: f64,
+}
+
+/// A tick: its place on the axis (0 at the low end, 1 at the high end) and its label.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Tick {
+    pub(super) place: f64,
+    pub(super) label: String,
+}
+
+impl Axis {
+    /// The axis from `low` to `high`; a range without extent is widened so that it can be drawn.
+    pub(super) fn new(low: f64, high: f64) -> Axis {
+        let magnitude = low.abs().max(high.abs());
+        if magnitude < SMALLEST {
+            return Axis { low: 0.0, high: 1.0, exponent: 0, unit: 1.0 };
+        }
+        let digits = magnitude.log10().floor() as i32;
+        let exponent = if (-2..=3).contains(&digits) { 0 } else { digits };
+        let unit = 10f64.powi(exponent);
+        let (low, high) = (low / unit, high / unit);
+        let magnitude = magnitude / unit;
+        if high - low > FLAT * magnitude {
+            Axis { low, high, exponent, unit }
+        } else {
+            Axis { low: low - magnitude / 2.0, high: high + magnitude / 2.0, exponent, unit }
+        }
+    }
+
+    /// The axis over all `values`, zero included if `from_zero`.
+    pub(super) fn over(values: impl Iterator<Item = f64>, from_zero: bool) -> Axis {
+        let start = if from_zero { (0.0, 0.0) } else { (f64::INFINITY, f64::NEG_INFINITY) };
+        let (low, high) = values.fold(start, |(low, high), value| (low.min(value), high.max(value)));
+        if low <= high { Axis::new(low, high) } else { Axis::new(0.0, 0.0) }
+    }
+
+    /// The same axis with these parts of its length added below and above.
+    pub(super) fn widened(self, [below, above]: [f64; 2]) -> Axis {
+        let length = self.high - self.low;
+        Axis { low: self.low - below * length, high: self.high + above * length, ..self }
+    }
+
+    /// Where `value` lies: 0 at the low end, 1 at the high end.
+    pub(super) fn place(&self, value: f64) -> f64 {
+        (value / self.unit - self.low) / (self.high - self.low)
+    }
+
+    /// The length of the axis, in the unit of the data.
+    pub(super) fn length(&self) -> f64 {
+        (self.high - self.low) * self.unit
+    }
+
+    /// The power of ten as a suffix of the axis title, empty for 1.
+    pub(super) fn suffix(&self) -> String {
+        if self.exponent == 0 { String::new() } else { format!("  ({})", self.power()) }
+    }
+
+    /// The power of ten that the labels are to be multiplied by, empty for 1.
+    pub(super) fn power(&self) -> String {
+        if self.exponent == 0 { String::new() } else { format!("×10{}", superscript(self.exponent)) }
+    }
+
+    /// Round ticks, about `count` of them.
+    pub(super) fn ticks(&self, count: usize) -> Vec<Tick> {
+        let step = round_step((self.high - self.low) / count.max(1) as f64);
+        let nearly = 1e-6;
+        let first = (self.low / step - nearly).ceil() as i64;
+        let last = (self.high / step + nearly).floor() as i64;
+        let tick = |k: i64| {
+            let value = k as f64 * step;
+            Tick { place: (value - self.low) / (self.high - self.low), label: number(value, step) }
+        };
+        (first..=last).map(tick).collect()
+    }
+
+    /// The round number next to the place `place`, to a hundredth of the length: its place and its label.
+    pub(super) fn round(&self, place: f64) -> Tick {
+        let step = round_step((self.high - self.low) / 100.0);
+        let value = ((self.low + place * (self.high - self.low)) / step).round() * step;
+        let place = (value - self.low) / (self.high - self.low);
+        let digits = number(value, step);
+        if digits == "0" {
+            return Tick { place, label: digits };
+        }
+        let digits =
+            if digits.contains('.') { digits.trim_end_matches('0').trim_end_matches('.') } else { &digits };
+        Tick { place, label: format!("{digits}{}", self.power()) }
+    }
+}
+
+/// The smallest of 1, 2, 5 times a power of ten that is at least `step`.
+fn round_step(step: f64) -> f64 {
+    let power = 10f64.powf(step.log10().floor());
+    let multiple = step / power * (1.0 - 1e-9);
+    power
+        * if multiple <= 1.0 {
+            1.0
+        } else if multiple <= 2.0 {
+            2.0
+        } else if multiple <= 5.0 {
+            5.0
+        } else {
+            10.0
+        }
+}
+
+/// A multiple of `step` with the decimals that the step needs and a true minus sign.
+fn number(value: f64, step: f64) -> String {
+    if value.abs() < step / 2.0 {
+        return "0".to_owned();
+    }
+    let decimals = (1e-9 - step.log10().floor()).max(0.0) as usize;
+    format!("{value:.decimals$}").replace('-', "−")
+}
+
+fn superscript(exponent: i32) -> String {
+    let raise = |c: char| match c {
+        '-' => '⁻',
+        '1' => '¹',
+        '2' => '²',
+        '3' => '³',
+        _ => char::from_u32('⁰' as u32 + c as u32 - '0' as u32).unwrap_or(c),
+    };
+    exponent.to_string().chars().map(raise).collect()
+}

@@ -1,0 +1,167 @@
+//! `summary.json`: what was solved, how, and how well.
+
+use std::io::{self, Write};
+
+use serde::Serialize;
+
+use crate::action::{ContactSolution, Rejected, Residuals};
+use crate::discretization::Discretization;
+use crate::solver::Statistics;
+
+/// The contents of `summary.json`, field by field. Other programs read the names.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Summary {
+    /// The title of the case.
+    pub title: String,
+    /// The version of this program.
+    pub version: &'static str,
+    /// The solver.
+    pub backend: String,
+    /// Why it stopped, in its own view.
+    pub status: &'static str,
+    /// Whether the residuals are within the tolerance: what counts.
+    pub certified: bool,
+    /// The tolerance that was asked for, relative.
+    pub tolerance: f64,
+    /// Vertices of the mesh.
+    pub vertices: usize,
+    /// Triangles of the mesh.
+    pub triangles: usize,
+    /// Unknowns of the quadratic program: two for each interior vertex.
+    pub unknowns: usize,
+    /// The longest edge.
+    pub h: f64,
+    /// The smallest angle, degrees.
+    pub min_angle: f64,
+    /// Iterations of the solver.
+    pub iterations: usize,
+    /// What the polish did; absent when it was not asked for or not possible.
+    pub polish: Option<PolishSummary>,
+    /// `J(u_h)`; absent when not certified.
+    pub energy: Option<f64>,
+    /// Vertices in contact; absent when not certified.
+    pub contact_vertices: Option<usize>,
+    /// The area of their dual cells; absent when not certified.
+    pub contact_area: Option<f64>,
+    /// `int lambda_h`; absent when not certified.
+    pub total_force: Option<f64>,
+    /// The relative residuals; absent when there was nothing to measure.
+    pub residuals: Option<ResidualSummary>,
+    /// Where the time went.
+    pub seconds: Seconds,
+}
+
+/// See [`PolishReport`](crate::solver::PolishReport).
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[allow(missing_docs, reason = "described at the type that it mirrors")]
+pub struct PolishSummary {
+    pub kept: bool,
+    pub repairs: usize,
+    pub settled: bool,
+    pub residual_before: f64,
+    pub residual_after: f64,
+}
+
+/// See [`Residuals`].
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[allow(missing_docs, reason = "described at the type that it mirrors")]
+pub struct ResidualSummary {
+    pub stationarity: f64,
+    pub primal: f64,
+    pub dual_sign: f64,
+    pub complementarity: f64,
+    pub action_mismatch: f64,
+    pub dual_mismatch: f64,
+    pub variational_inequality: f64,
+    pub overlap: f64,
+}
+
+/// Seconds of wall time.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct Seconds {
+    /// Making or reading the mesh.
+    pub mesh: f64,
+    /// Assembling the discrete problem.
+    pub assembly: f64,
+    /// Before the first iteration.
+    pub setup: f64,
+    /// Iterating and polishing.
+    pub solve: f64,
+    /// Writing the files, but for the summary itself.
+    pub output: f64,
+}
+
+impl Summary {
+    /// The summary of a run, certified or not.
+    pub fn new(
+        title: &str,
+        d: &Discretization,
+        tolerance: f64,
+        result: Result<&ContactSolution, &Rejected>,
+        mut seconds: Seconds,
+    ) -> Self {
+        let (statistics, residuals) = match result {
+            Ok(solution) => (solution.statistics(), Some(solution.residuals())),
+            Err(rejected) => (&rejected.statistics, rejected.residuals.as_ref()),
+        };
+        let solution = result.ok();
+        seconds.setup = statistics.setup_seconds;
+        seconds.solve = statistics.solve_seconds;
+        let quality = d.mesh().quality();
+        Self {
+            title: title.into(),
+            version: env!("CARGO_PKG_VERSION"),
+            backend: statistics.solver.clone(),
+            status: statistics.status.as_str(),
+            certified: solution.is_some(),
+            tolerance,
+            vertices: d.mesh().points().len(),
+            triangles: d.mesh().triangles().len(),
+            unknowns: 2 * d.interior().len(),
+            h: quality.h_max,
+            min_angle: quality.min_angle,
+            iterations: statistics.iterations,
+            polish: polish(statistics),
+            energy: solution.map(ContactSolution::energy),
+            contact_vertices: solution.map(|s| s.contact().iter().filter(|&&contact| contact).count()),
+            contact_area: solution.map(ContactSolution::contact_area),
+            total_force: solution.map(ContactSolution::total_force),
+            residuals: residuals.map(ResidualSummary::from),
+            seconds,
+        }
+    }
+
+    /// Writes it as JSON.
+    ///
+    /// # Errors
+    /// When writing fails.
+    pub fn write(&self, mut out: impl Write) -> io::Result<()> {
+        serde_json::to_writer_pretty(&mut out, self)?;
+        writeln!(out)
+    }
+}
+
+fn polish(statistics: &Statistics) -> Option<PolishSummary> {
+    statistics.polish.map(|report| PolishSummary {
+        kept: report.kept,
+        repairs: report.repairs,
+        settled: report.settled,
+        residual_before: report.residual_before,
+        residual_after: report.residual_after,
+    })
+}
+
+impl From<&Residuals> for ResidualSummary {
+    fn from(residuals: &Residuals) -> Self {
+        Self {
+            stationarity: residuals.stationarity.value,
+            primal: residuals.primal.value,
+            dual_sign: residuals.dual_sign.value,
+            complementarity: residuals.complementarity.value,
+            action_mismatch: residuals.action_mismatch.value,
+            dual_mismatch: residuals.dual_mismatch.value,
+            variational_inequality: residuals.variational_inequality.value,
+            overlap: residuals.overlap,
+        }
+    }
+}
