@@ -4,6 +4,8 @@ mod certificate;
 mod recovery;
 mod residuals;
 mod solution;
+#[cfg(test)]
+mod tests;
 
 pub use certificate::{Reason, Rejected, certify};
 pub use recovery::Action;

@@ -46,10 +46,7 @@ impl Failure {
 pub fn main() -> ExitCode {
     let result = match Arguments::try_parse() {
         Ok(arguments) => run(&arguments.command),
-        Err(error) if !error.use_stderr() => {
-            terminal::print(&error.to_string());
-            return ExitCode::SUCCESS;
-        }
+        Err(error) if !error.use_stderr() => terminal::print(&error.to_string()),
         Err(error) => Err(Failure::Input(args::one_line(&error))),
     };
     match result {

@@ -7,6 +7,9 @@ use crate::fem::{NotFinite, load_around, stiffness_around};
 use crate::mesh::{Mesh, VertexKind, VertexTriangles};
 use crate::problem::ContactProblem;
 
+/// Tensions, displacements and loads must lie between the inverse of this and this: energies must not overflow.
+const LARGEST: f64 = 1e40;
+
 /// The data of (3.4) on a mesh: `K`, `F_i`, `g_h`, the numbering of the unknowns, `|D_a|`.
 ///
 /// Vectors over *vertices* have an entry for each vertex of the mesh; vectors over *unknowns* have one for each
@@ -42,8 +45,8 @@ impl<'m> Discretization<'m> {
     /// Assembles the discrete problem. Linear time and memory.
     ///
     /// # Errors
-    /// [`DiscretizationError`] when a load is not finite at a quadrature point, or the height is negative or not finite
-    /// at a boundary vertex.
+    /// [`DiscretizationError`] when a load is not finite at a quadrature point, the height is negative or not finite at a
+    /// boundary vertex, or tensions, loads or displacements are so large or small that energies would overflow.
     pub fn new(problem: &ContactProblem, mesh: &'m Mesh) -> Result<Self, DiscretizationError> {
         let around = VertexTriangles::new(mesh.points().len(), mesh.triangles());
         let load_of = |i: usize| {
@@ -60,9 +63,7 @@ impl<'m> Discretization<'m> {
         let vertices = || 0..mesh.points().len();
         let interior: Vec<usize> = vertices().filter(|&a| mesh.kind()[a] == VertexKind::Interior).collect();
         let scales = Scales::new(mesh, problem.tension(), &load, &height, &dual_area);
-        if !(scales.displacement.is_finite() && scales.force_density.is_finite()) {
-            return Err(DiscretizationError::Overflow);
-        }
+        scales.check_range(problem.tension())?;
         Ok(Self {
             mesh,
             tension: problem.tension(),
@@ -160,7 +161,10 @@ impl Scales {
         let used = |&a: &usize| mesh.kind()[a] != VertexKind::Unused;
         let density = [0, 1].map(|i| {
             let densities = (0..height.len()).filter(used).map(|a| load[i][a].abs() / dual_area[a]);
-            densities.fold(0.0, f64::max)
+            // Overflow can leave a NaN, which `f64::max` would lose.
+            densities
+                .map(|density| if density.is_nan() { f64::INFINITY } else { density })
+                .fold(0.0, f64::max)
         });
         let heights =
             || (0..height.len()).filter(|&a| mesh.kind()[a] == VertexKind::Boundary).map(|a| height[a]);
@@ -177,6 +181,19 @@ impl Scales {
             displacement: or_one(highest + deflection),
             force_density: or_one(force_density),
             dual_area: dual_area.iter().copied().fold(0.0, f64::max),
+        }
+    }
+
+    fn check_range(&self, tension: [f64; 2]) -> Result<(), DiscretizationError> {
+        let sizes = [
+            ("the tension mu1 is", tension[0]),
+            ("the tension mu2 is", tension[1]),
+            ("the loads have the size", self.force_density),
+            ("the displacements have the size", self.displacement),
+        ];
+        match sizes.into_iter().find(|(_, value)| !(1.0 / LARGEST..=LARGEST).contains(value)) {
+            Some((quantity, value)) => Err(DiscretizationError::OutOfRange { quantity, value }),
+            None => Ok(()),
         }
     }
 }
@@ -219,7 +236,7 @@ pub(crate) fn principal_submatrix(matrix: &CsMat<f64>, chosen: &[usize]) -> CsMa
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum DiscretizationError {
     /// A load is not finite.
-    #[error("load f{membrane} has no finite value: {source}")]
+    #[error("load f{membrane} {source}: it must be finite on the whole domain")]
     Load {
         /// 1 or 2.
         membrane: usize,
@@ -236,9 +253,12 @@ pub enum DiscretizationError {
         /// The value there.
         value: f64,
     },
-    /// The size of the solution cannot be represented.
-    #[error(
-        "the displacements overflow: loads, height, or their ratio to the tensions are too large; choose other units"
-    )]
-    Overflow,
+    /// A size that leads to overflow.
+    #[error("{quantity} {value:e}, out of the range from {:e} to {LARGEST:e}: choose other units", 1.0 / LARGEST)]
+    OutOfRange {
+        /// Whose size.
+        quantity: &'static str,
+        /// The size.
+        value: f64,
+    },
 }

@@ -1,5 +1,11 @@
 //! Unilateral contact between two elastic membranes: discretised by P1 finite elements, solved as a sparse convex
 //! quadratic program, certified.
+//!
+//! The modules stand in the order of the data; each uses only those before it. Start with
+//! [`ContactProblem`](problem::ContactProblem), a [`Mesh`](mesh::Mesh), the
+//! [`Discretization`](discretization::Discretization) of the two, a [`ContactSolver`](solver::ContactSolver) such as
+//! [`QpSolver`](solver::QpSolver), and [`certify`](action::certify). Numbers in round brackets are those of F. Ben
+//! Belgacem, C. Bernardi, A. Blouza, M. Vohralik, Math. Model. Nat. Phenom. 4 (2009).
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
 
@@ -15,3 +21,8 @@ pub mod output;
 pub mod cli;
 
 pub use sprs;
+
+/// The README's code is compiled and run.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

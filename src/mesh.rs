@@ -8,6 +8,8 @@ mod polygon;
 mod quality;
 mod read;
 mod refine;
+#[cfg(test)]
+pub(crate) mod samples;
 mod structured;
 
 pub use check::MeshError;

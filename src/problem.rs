@@ -10,11 +10,14 @@ mod cases;
 mod domain;
 mod expression;
 mod function;
+mod spelling;
 
 pub use cases::{Case, CaseError, ExactSolution, Interface, Parameter, Range};
 pub use domain::Domain;
 pub use expression::{Expression, ExpressionError};
 pub use function::Function;
+
+pub(crate) use spelling::nearest;
 
 use thiserror::Error;
 

@@ -21,7 +21,8 @@ pub struct Residuals {
     /// `mu1 K u1 - F_1 = y` and `F_2 - mu2 K u2 = y`, force per area: the first line of (4.7) for all hat functions of
     /// both membranes, with the multipliers in place of the action.
     pub stationarity: Residual,
-    /// `u1 >= u2` inside, `u1 = g_h` and `u2 = 0` on the boundary: the pair is in the cone `K_gh` (3.3).
+    /// `u1 >= u2` inside, `u1 = g_h` and `u2 = 0` on the boundary: the pair is in the cone `K_gh` (3.3). Both are zero at
+    /// unused vertices.
     pub primal: Residual,
     /// `y >= 0`, and `lambda_h >= 0` (4.2) as seen by either membrane.
     pub dual_sign: Residual,
@@ -67,8 +68,8 @@ impl Residuals {
             [(lambda_1, rounding_1), (lambda_2, rounding_2)]
                 .map(|(lambda, rounding)| ((lambda[k] - density(k, a)).abs() / force, rounding[k] / force))
         });
-        let boundary = (0..u1.len()).filter(|&a| d.mesh().kind()[a] == VertexKind::Boundary);
-        let trace = boundary.map(|a| (u1[a] - d.height()[a]).abs().max(u2[a].abs()));
+        let held = (0..u1.len()).filter(|&a| d.mesh().kind()[a] != VertexKind::Interior);
+        let trace = held.flat_map(|a| [(u1[a] - d.height()[a]).abs(), u2[a].abs()]);
         let primal = unknowns().map(|(_, a)| -gap(a)).chain(trace).map(|defect| (defect / length, 0.0));
         let dual_sign = unknowns().flat_map(|(k, a)| {
             [(density(k, a), 0.0), (lambda_1[k], rounding_1[k]), (lambda_2[k], rounding_2[k])]

@@ -13,11 +13,12 @@ const OUTPUT: &str = "out";
 #[command(
     name = "membranes",
     version,
-    about = "Unilateral contact between two elastic membranes, solved by finite elements and certified",
+    about = "Unilateral contact between two elastic membranes, by certified finite elements",
+    arg_required_else_help = false,
     after_help = "\
 A first run:
   membranes cases strip > strip.toml     a complete case file, with its formulas
-  membranes solve strip.toml             writes out/strip/{solution.vtu, summary.json, membranes.png}
+  membranes solve strip.toml             writes three files into out/strip
 
 Open solution.vtu in ParaView (or meshio, PyVista), membranes.png anywhere.
 Exit codes: 0 certified; 1 ran, but not certified; 2 bad input or usage."
@@ -31,11 +32,11 @@ pub(super) struct Arguments {
 pub(super) enum Command {
     /// Solve a case and write solution.vtu, summary.json, membranes.png
     Solve(SolveArguments),
-    /// Solve a case with every backend, with and without polish, and show every residual
+    /// Show every residual, from every backend, with and without polish
     Check(CheckArguments),
     /// Write the quadratic program of a case for other solvers
     Export(ExportArguments),
-    /// List the built-in exact cases with their formulas, or print one as a case file
+    /// List the built-in exact cases, or print one as a case file
     Cases(CasesArguments),
 }
 
@@ -50,7 +51,7 @@ pub(super) struct SolveArguments {
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
     /// Largest relative residual, in place of the case file's
-    #[arg(long, value_name = "T")]
+    #[arg(long, value_name = "T", value_parser = tolerance, allow_negative_numbers = true)]
     pub(super) tolerance: Option<f64>,
     /// Leave the backend's answer as it is
     #[arg(long)]
@@ -77,11 +78,11 @@ pub(super) struct ExportArguments {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum Format {
-    /// problem.qps, for HiGHS, Gurobi, CPLEX, ... (rename it to .mps for HiGHS)
+    /// problem.qps, for Gurobi, CPLEX (for HiGHS, rename it to .mps)
     Qps,
     /// problem.npz, for numpy and scipy
     Npz,
-    /// problem_P.mtx, problem_A.mtx, problem_q.mtx, problem_b.mtx: MatrixMarket
+    /// MatrixMarket: problem_P.mtx, and likewise for A, q and b
     Mtx,
 }
 
@@ -98,7 +99,7 @@ pub(super) struct CaseArguments {
     #[arg(value_name = "CASE.toml")]
     pub(super) path: PathBuf,
     /// Further uniform refinements of the mesh
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = refinements, allow_negative_numbers = true)]
     pub(super) refine: u32,
     /// No output on the terminal but errors
     #[arg(long, short)]
@@ -113,12 +114,24 @@ impl CaseArguments {
     }
 }
 
-/// What clap has to say, without its paragraphs on usage.
+fn tolerance(text: &str) -> Result<f64, String> {
+    let value = text.parse().ok().filter(|&value| value > 0.0 && value < 1.0);
+    value.ok_or("choose a number between 0 and 1".into())
+}
+
+fn refinements(text: &str) -> Result<u32, String> {
+    text.parse().map_err(|_| "choose a whole number, at least 0".into())
+}
+
+/// What clap has to say, without its paragraphs on usage and on arguments that begin with a hyphen.
 pub(super) fn one_line(error: &clap::Error) -> String {
     let text = error.to_string();
-    let said = text.split("\n\nUsage:").next().unwrap_or(&text).split("\n\nFor more information").next();
-    let words: Vec<&str> = said.unwrap_or(&text).split_whitespace().collect();
-    let message = words.join(" ");
+    let of_use = |paragraph: &&str| {
+        let asides = ["Usage:", "For more information", "tip: to pass"];
+        !asides.into_iter().any(|aside| paragraph.trim_start().starts_with(aside))
+    };
+    let words = |paragraph: &str| paragraph.split_whitespace().collect::<Vec<_>>().join(" ");
+    let message = text.split("\n\n").filter(of_use).map(words).collect::<Vec<_>>().join("; ");
     let message = message.strip_prefix("error: ").unwrap_or(&message);
     format!("{message}; see `membranes --help`")
 }

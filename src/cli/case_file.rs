@@ -1,6 +1,7 @@
 //! The case file: problem, mesh and solver from TOML.
 
 use std::collections::BTreeMap;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
@@ -111,7 +112,7 @@ impl CaseFile {
     pub fn read(path: &Path) -> Result<Self, Failure> {
         let name = path.display().to_string();
         let text = std::fs::read_to_string(path)
-            .map_err(|error| Failure::Input(format!("{name}: cannot read the case file: {error}")))?;
+            .map_err(|error| Failure::Input(format!("{name}: {}", unreadable(&error))))?;
         Self::parse(&name, &text, path)
     }
 
@@ -130,6 +131,15 @@ impl CaseFile {
         top.finish()?;
         Ok(Self { title, problem, exact, mesh, refine, solver })
     }
+}
+
+fn unreadable(error: &io::Error) -> String {
+    let remedy = match error.kind() {
+        io::ErrorKind::NotFound => "name an existing file, or make one with `membranes cases strip`",
+        io::ErrorKind::InvalidData => "save it as UTF-8",
+        _ => "name a readable file",
+    };
+    format!("cannot read the case file: {error}; {remedy}")
 }
 
 /// `case = "..."` and `[parameters]`.
@@ -159,16 +169,16 @@ fn problem(top: &mut Section, exact: Option<&ExactSolution>) -> Result<ContactPr
         return exact.problem().map_err(|error| top.table_error(format!("[parameters]: {error}")));
     }
     if section.is_empty() {
-        return Err(top.table_error(
-            "there is no problem: add a table [membranes] with tension, load, height, or `case = \"...\"`",
-        ));
+        let remedy = "add a table [membranes] with tension, load, height, or `case = \"...\"`";
+        return Err(top
+            .misspelt(&["membranes", "case"])
+            .unwrap_or_else(|| top.table_error(format!("there is no problem: {remedy}"))));
     }
     let [mu1, mu2] =
         pair(&mut section, "tension", &|value| as_number(value).ok_or("must be a number".into()))?
-            .ok_or_else(|| section.error("tension", "is missing: add `tension = [mu1, mu2]`"))?;
-    let [f1, f2] = pair(&mut section, "load", &function)?.ok_or_else(|| {
-        section.error("load", "is missing: add `load = [f1, f2]`, numbers or expressions in x and y")
-    })?;
+            .ok_or_else(|| section.missing("tension", "add `tension = [mu1, mu2]`"))?;
+    let [f1, f2] = pair(&mut section, "load", &function)?
+        .ok_or_else(|| section.missing("load", "add `load = [f1, f2]`, numbers or expressions in x and y"))?;
     let height = section
         .take("height")
         .map(|value| function(&value).map_err(|problem| section.error("height", problem)))
@@ -199,9 +209,9 @@ fn pair<T>(
 /// A number or an expression.
 fn function(value: &Value) -> Result<Function, String> {
     match value {
-        Value::String(source) => {
-            Expression::parse(source).map(Function::from).map_err(|error| error.to_string())
-        }
+        Value::String(source) => Expression::parse(source)
+            .map(Function::from)
+            .map_err(|error| format!("is no expression: {error}")),
         _ => as_number(value)
             .map(Function::Constant)
             .ok_or("must be a number or an expression in quotes".into()),
@@ -235,7 +245,10 @@ fn mesh(
         (None, None, Some(exact)) => generator(&mut fineness, exact.domain())?,
         (None, None, None) => {
             let remedy = "add a table [domain] with `shape = \"square\"` or `mesh = \"file.msh\"`";
-            return Err(top.table_error(format!("there is no domain: {remedy}")));
+            return Err(place
+                .misspelt(&["shape", "mesh"])
+                .or_else(|| top.misspelt(&["domain"]))
+                .unwrap_or_else(|| top.table_error(format!("there is no domain: {remedy}"))));
         }
     };
     place.finish()?;
@@ -259,8 +272,7 @@ fn domain(section: &mut Section, shape: &str) -> Result<Domain, Failure> {
         "rectangle" => {
             let lower = section.point("lower")?.unwrap_or([0.0, 0.0]);
             let upper = section.point("upper")?;
-            let missing =
-                || section.error("upper", "is missing: add `upper = [x, y]`, the upper right corner");
+            let missing = || section.missing("upper", "add `upper = [x, y]`, the upper right corner");
             Domain::Rectangle { lower, upper: upper.ok_or_else(missing)? }
         }
         "l-shape" => Domain::LShape { half_width: section.number("half_width")?.unwrap_or(1.0) },
@@ -271,7 +283,7 @@ fn domain(section: &mut Section, shape: &str) -> Result<Domain, Failure> {
         "polygon" => {
             let vertices = section.points("vertices")?;
             let holes = section.point_lists("holes")?.unwrap_or_default();
-            let missing = || section.error("vertices", "is missing: add `vertices = [[x, y], ...]`");
+            let missing = || section.missing("vertices", "add `vertices = [[x, y], ...]`");
             Domain::Polygon { vertices: vertices.ok_or_else(missing)?, holes }
         }
         _ => {
@@ -297,7 +309,7 @@ fn mesh_size(section: &mut Section, domain: &Domain) -> Result<MeshSize, Failure
             Ok(MeshSize::EdgeLength { size, min_angle: min_angle.unwrap_or(DEFAULT_MIN_ANGLE) })
         }
         (None, None) if matches!(domain, Domain::Polygon { .. }) => {
-            Err(section.error("size", "is missing: a polygon needs a target edge length"))
+            Err(section.missing("size", "add `size = ...`, the target edge length"))
         }
         (cells, None) => {
             if min_angle.is_some() {

@@ -10,8 +10,7 @@ pub(super) fn run(arguments: &CasesArguments) -> Result<(), Failure> {
         None => list(),
         Some(name) => case_file(Case::from_name(name).map_err(|error| Failure::Input(error.to_string()))?),
     };
-    print(&text);
-    Ok(())
+    print(&text)
 }
 
 /// All cases with their formulas.
@@ -19,7 +18,7 @@ fn list() -> String {
     let mut text = String::from("Built-in cases with a known solution. In all of them\n\n");
     text += &indented(Case::NOTATION, "  ");
     for case in Case::ALL {
-        text += &format!("\n{} ({}): {}\n", case.name(), case.letter(), case.title());
+        text += &format!("\n{} ({})\n  {}\n", case.name(), case.letter(), case.title());
         text += &indented(case.formulas(), "  ");
         let parameters: Vec<String> =
             case.parameters().iter().map(|p| format!("{} = {}", p.name, p.default)).collect();

@@ -33,7 +33,7 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<(), Failure> {
             "{}: {unknowns} unknowns, tolerance {:.0e}\n",
             setup.case.title, setup.case.solver.tolerance
         );
-        print(&(title + &table(&columns)));
+        print(&(title + &table(&columns)))?;
     }
     // The unpolished answers are shown for comparison: only the polished ones have to be certified.
     match columns.iter().step_by(2).find_map(|column| column.result.as_ref().err()) {

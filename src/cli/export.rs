@@ -33,7 +33,7 @@ pub(super) fn run(arguments: &ExportArguments) -> Result<(), Failure> {
     }
     drop(progress);
     if !arguments.case.quiet {
-        print(&(written.join("\n") + "\n"));
+        print(&(written.join("\n") + "\n"))?;
     }
     Ok(())
 }

@@ -3,6 +3,10 @@
 use toml::{Table, Value};
 
 use super::Failure;
+use crate::problem::nearest;
+
+/// Letters that may be wrong, missing, surplus or exchanged in a misspelt key.
+const MAX_SLIPS: usize = 2;
 
 /// The tables of a case file, each read once by its keys; [`finish`](Section::finish) refuses the others.
 pub(super) struct Section {
@@ -116,13 +120,29 @@ impl Section {
     pub(super) fn finish(self) -> Result<(), Failure> {
         match self.table.keys().next() {
             None => Ok(()),
-            Some(key) if self.known.is_empty() => Err(self.error(key, "has no place here: remove it")),
-            Some(key) => {
-                let nearest = self.known.iter().min_by_key(|known| strsim::damerau_levenshtein(known, key));
-                let nearest = nearest.expect("there are known keys");
-                Err(self.error(key, format!("is no key of a case file; the nearest is `{nearest}`")))
-            }
+            Some(key) => Err(match nearest(key, self.known.iter().copied()) {
+                Some((known, _)) => self.unknown(key, known),
+                None => self.error(key, "has no place here: remove it"),
+            }),
         }
+    }
+
+    /// The error for a key that has to be there.
+    pub(super) fn missing(&self, key: &'static str, remedy: &str) -> Failure {
+        self.misspelt(&[key]).unwrap_or_else(|| self.error(key, format!("is missing: {remedy}")))
+    }
+
+    /// The error for a key that is almost one of `wanted`, none of which is there: to say that they are missing would
+    /// send the reader the wrong way.
+    pub(super) fn misspelt(&self, wanted: &[&str]) -> Option<Failure> {
+        self.table.keys().find_map(|key| match nearest(key, wanted.iter().copied()) {
+            Some((meant, slips)) if slips <= MAX_SLIPS => Some(self.unknown(key, meant)),
+            _ => None,
+        })
+    }
+
+    fn unknown(&self, key: &str, nearest: &str) -> Failure {
+        self.error(key, format!("is no key of a case file; the nearest is `{nearest}`"))
     }
 
     /// An error about a key of this table.

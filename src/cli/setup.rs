@@ -9,13 +9,13 @@ use super::progress::Progress;
 use super::terminal::grouped;
 use super::{Failure, SolverSettings};
 use crate::discretization::Discretization;
-use crate::mesh::{Mesh, generate};
+use crate::mesh::{Mesh, ReadError, generate};
 use crate::output::{Seconds, WriteSeek, write_atomically};
 use crate::qp::Clarabel;
 use crate::solver::{ContactSolver, QpSolver, SolverOptions};
 
 /// More vertices than this are refused before they are made: see the limit of the generators.
-const MAX_VERTICES: usize = 50_000_000;
+const MAX_VERTICES: f64 = 5e7;
 
 /// The case and its mesh.
 pub(super) struct Setup {
@@ -49,22 +49,31 @@ impl Setup {
 
 fn make_mesh(name: &str, case: &CaseFile, further: usize) -> Result<Mesh, Failure> {
     let mut mesh = match &case.mesh {
-        MeshSource::File(path) => {
-            Mesh::read_gmsh(path).map_err(|error| Failure::Input(format!("{}: {error}", path.display())))?
-        }
+        MeshSource::File(path) => Mesh::read_gmsh(path).map_err(|error| cannot_read(name, path, &error))?,
         MeshSource::Generator(domain, size) => generate(domain, *size)
             .map_err(|error| Failure::Input(format!("{name}: [mesh], [domain]: {error}")))?,
     };
-    for _ in 0..case.refine.saturating_add(further) {
-        if mesh.points().len() > MAX_VERTICES / 4 {
-            let limit = grouped(MAX_VERTICES);
-            return Err(Failure::Input(format!(
-                "{name}: refinement leads beyond {limit} vertices: refine less"
-            )));
-        }
+    let refinements = case.refine.saturating_add(further);
+    // Each refinement makes four times as many.
+    if !(mesh.points().len() as f64 * 4f64.powf(refinements as f64) <= MAX_VERTICES) {
+        return Err(Failure::Input(format!(
+            "{name}: {refinements} refinements lead beyond {MAX_VERTICES:.0e} vertices: refine less"
+        )));
+    }
+    for _ in 0..refinements {
         mesh = mesh.refine().mesh;
     }
     Ok(mesh)
+}
+
+fn cannot_read(case: &str, mesh: &Path, error: &ReadError) -> Failure {
+    let mesh = mesh.display();
+    Failure::Input(match error {
+        ReadError::Io(_) => {
+            format!("{case}: `domain.mesh`: {mesh}: {error}; name a file, relative to the case file")
+        }
+        _ => format!("{mesh}: {error}"),
+    })
 }
 
 /// The solver of this name.

@@ -22,9 +22,11 @@ const SUMMARY: &str = "summary.json";
 pub(super) fn run(arguments: &SolveArguments) -> Result<(), Failure> {
     let progress = Progress::new(arguments.case.quiet);
     let mut setup = Setup::new(&arguments.case, &progress)?;
-    override_settings(&mut setup, arguments)?;
+    override_settings(&mut setup, arguments);
     let settings = &setup.case.solver;
     let (d, seconds) = setup.discretize(&progress)?;
+    let folder = arguments.case.output_folder(arguments.out.as_ref());
+    make_folder(&folder)?;
 
     progress.stage(format!(
         "{} solves for {} unknowns",
@@ -37,8 +39,6 @@ pub(super) fn run(arguments: &SolveArguments) -> Result<(), Failure> {
     let polish = candidate.statistics.polish;
     let result = certify(&d, candidate, settings.tolerance);
 
-    let folder = arguments.case.output_folder(arguments.out.as_ref());
-    make_folder(&folder)?;
     let title = &setup.case.title;
     match result {
         Ok(solution) => {
@@ -50,7 +50,7 @@ pub(super) fn run(arguments: &SolveArguments) -> Result<(), Failure> {
             write_file(&folder.join(SUMMARY), |out| summary.write(out))?;
             drop(progress);
             if !arguments.case.quiet {
-                print(&table(&summary, polish, &folder));
+                print(&table(&summary, polish, &folder))?;
             }
             Ok(())
         }
@@ -69,21 +69,15 @@ pub(super) fn run(arguments: &SolveArguments) -> Result<(), Failure> {
 }
 
 /// Arguments come before the case file.
-fn override_settings(setup: &mut Setup, arguments: &SolveArguments) -> Result<(), Failure> {
+fn override_settings(setup: &mut Setup, arguments: &SolveArguments) {
     let settings = &mut setup.case.solver;
     if let Some(backend) = arguments.backend {
         settings.backend = backend;
     }
     if let Some(tolerance) = arguments.tolerance {
-        if !(tolerance > 0.0 && tolerance < 1.0) {
-            return Err(Failure::Input(format!(
-                "--tolerance {tolerance} is out of range: choose between 0 and 1"
-            )));
-        }
         settings.tolerance = tolerance;
     }
     settings.polish &= !arguments.no_polish;
-    Ok(())
 }
 
 fn write_solution(
@@ -122,7 +116,7 @@ fn table(summary: &Summary, polish: Option<PolishReport>, folder: &Path) -> Stri
         (
             "mesh",
             format!(
-                "{} vertices, {} triangles, smallest angle {:.1} degrees",
+                "{} vertices, {} triangles, least angle {:.1} degrees",
                 grouped(summary.vertices),
                 grouped(summary.triangles),
                 summary.min_angle
@@ -159,10 +153,9 @@ fn polish_line(polish: Option<PolishReport>) -> String {
         None => "off".into(),
         Some(PolishReport { kept, repairs, residual_before, residual_after, .. }) => {
             let verdict = if kept { "kept" } else { "not kept" };
-            let repairs = if repairs == 1 { "1 repair".into() } else { format!("{repairs} repairs") };
-            format!(
-                "{verdict}, {repairs} of the contact set, residual {residual_before:.1e} -> {residual_after:.1e}"
-            )
+            let repairs =
+                if repairs == 1 { "1 contact repair".into() } else { format!("{repairs} contact repairs") };
+            format!("{verdict}, {repairs}, residual {residual_before:.1e} -> {residual_after:.1e}")
         }
     }
 }

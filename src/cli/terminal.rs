@@ -2,14 +2,16 @@
 
 use std::io::{self, Write};
 
+use super::Failure;
+
 /// Prints to standard output. A reader that has gone away (`| head`) is no error.
-pub(super) fn print(text: &str) {
+pub(super) fn print(text: &str) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
-    let printed = out.write_all(text.as_bytes()).and_then(|()| out.flush());
-    if let Err(error) = printed
-        && error.kind() != io::ErrorKind::BrokenPipe
-    {
-        eprintln!("error: cannot write to the standard output: {error}");
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::Input(format!(
+            "cannot write to the standard output: {error}; redirect it elsewhere"
+        ))),
+        _ => Ok(()),
     }
 }
 

@@ -12,7 +12,7 @@ const BLOCK: usize = 512;
 
 /// A function has no finite value at a quadrature point.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
-#[error("it is {value} at the point ({}, {})", point[0], point[1])]
+#[error("is {value} at the point ({}, {})", point[0], point[1])]
 pub struct NotFinite {
     /// Where.
     pub point: [f64; 2],
@@ -26,7 +26,7 @@ pub struct NotFinite {
 /// number of threads.
 ///
 /// # Errors
-/// [`NotFinite`] when `f` is NaN or infinite at a quadrature point.
+/// [`NotFinite`] when `f` is NaN or infinite at a quadrature point, naming the first in the order of the triangles.
 pub fn load(mesh: &Mesh, f: &Function) -> Result<Vec<f64>, NotFinite> {
     load_around(mesh, &VertexTriangles::new(mesh.points().len(), mesh.triangles()), f)
 }
@@ -38,9 +38,10 @@ pub(crate) fn load_around(
     f: &Function,
 ) -> Result<Vec<f64>, NotFinite> {
     let blocks = mesh.triangles().len().div_ceil(BLOCK);
-    let blocks: Result<Vec<_>, _> =
+    // Collected before errors are looked for, so that the first in the order of the triangles is named.
+    let blocks: Vec<_> =
         (0..blocks).into_par_iter().map(|block| element_loads(mesh, block, f, &DEGREE_4)).collect();
-    let blocks = blocks?;
+    let blocks = blocks.into_iter().collect::<Result<Vec<_>, _>>()?;
     let on_element = |t: usize, a: usize| {
         let corner = mesh.triangles()[t].iter().position(|&b| b == a);
         blocks[t / BLOCK][t % BLOCK][corner.expect("a is a corner of the triangles around it")]

@@ -86,3 +86,41 @@ fn group_by_key<V: Copy + Default, I: Iterator<Item = (usize, V)>>(
     }
     (start, values)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::samples::{irregular, renumbered};
+
+    #[test]
+    fn triangles_around_vertices_are_those_of_a_search() {
+        let (mesh, _) = renumbered(&irregular(4), 1);
+        let around = VertexTriangles::new(mesh.points().len() + 1, mesh.triangles());
+        for a in 0..mesh.points().len() {
+            let found: Vec<usize> =
+                (0..mesh.triangles().len()).filter(|&t| mesh.triangles()[t].contains(&a)).collect();
+            assert_eq!(around.of(a), found);
+            assert!(!found.is_empty());
+        }
+        assert!(around.of(mesh.points().len()).is_empty(), "a vertex in no triangle");
+    }
+
+    #[test]
+    fn edges_of_two_triangles() {
+        let half_edges = HalfEdges::new(5, &[[0, 1, 2], [0, 2, 4]]);
+        let side = |end, reversed, triangle| HalfEdge { end, reversed, triangle };
+        let found: Vec<_> = half_edges.edges().map(|(a, b, sides)| (a, b, sides.to_vec())).collect();
+        let expected = [
+            (0, 1, vec![side(1, false, 0)]),
+            (0, 2, vec![side(2, false, 1), side(2, true, 0)]),
+            (0, 4, vec![side(4, true, 1)]),
+            (1, 2, vec![side(2, false, 0)]),
+            (2, 4, vec![side(4, false, 1)]),
+        ];
+        assert_eq!(found, expected);
+        // Turned round, a triangle passes its edges the other way.
+        let turned = HalfEdges::new(5, &[[0, 2, 1], [0, 2, 4]]);
+        let sides = turned.edges().find(|&(a, b, _)| (a, b) == (0, 2)).unwrap().2;
+        assert_eq!(sides, [side(2, false, 0), side(2, false, 1)]);
+    }
+}

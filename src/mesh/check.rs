@@ -1,21 +1,29 @@
 //! The checked constructor: what it returns is a conforming triangulation.
 
-use std::collections::HashMap;
+mod boundary;
+mod boxes;
+mod pieces;
+#[cfg(test)]
+mod tests;
 
 use thiserror::Error;
 
 use super::adjacency::{HalfEdge, HalfEdges};
+use super::quality::angles;
 use super::{Mesh, VertexKind, distance_sq, twice_signed_area};
+use boundary::{Boundary, BoundaryEdge};
+use pieces::check_pieces;
 
 /// A triangle whose doubled area is below this fraction of its longest edge squared is degenerate. Rounding of the
 /// coordinates moves that fraction by about 1e-16; a sliver of 0.01 degrees has 1.7e-4.
 const MIN_RELATIVE_AREA: f64 = 1e-12;
 
-/// Two boundary edges from one vertex whose directions differ by less than this angle (radians) lie on each other.
-const MIN_BOUNDARY_ANGLE: f64 = 1e-10;
+/// Coordinates beyond this are refused, and triangles below its inverse are degenerate: products of areas, loads and
+/// displacements must not overflow.
+const MAX_COORDINATE: f64 = 1e40;
 
-/// Boundary vertices closer than this fraction of the mesh's extent are the same point, given twice.
-const COINCIDENCE: f64 = 1e-12;
+/// What rounding may add to a full turn, radians.
+const TURN_ROUNDING: f64 = 1e-9;
 
 /// Why points and triangles are not a triangulation. Vertices and triangles are counted from 0.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -23,9 +31,9 @@ pub enum MeshError {
     /// There is nothing to solve on.
     #[error("the mesh has no triangle: export the surface, not only its boundary")]
     Empty,
-    /// A coordinate is NaN or infinite.
-    #[error("vertex {vertex} has the coordinates ({}, {}): all must be finite", point[0], point[1])]
-    NotFinite {
+    /// A coordinate is NaN, infinite, or huge.
+    #[error("vertex {vertex} has the coordinates ({:e}, {:e}): all must be finite and below {MAX_COORDINATE:e}; choose another unit of length", point[0], point[1])]
+    Coordinates {
         /// The vertex.
         vertex: usize,
         /// Its coordinates.
@@ -71,6 +79,36 @@ pub enum MeshError {
         /// The ends of the edge.
         edge: [usize; 2],
     },
+    /// The triangles around a vertex overlap.
+    #[error(
+        "the triangles around vertex {vertex} overlap (triangle {triangle} among them): they must not cover more than one full turn, each direction once"
+    )]
+    OverlapAtVertex {
+        /// The vertex.
+        vertex: usize,
+        /// One of the triangles.
+        triangle: usize,
+    },
+    /// Two edges of the boundary cross.
+    #[error(
+        "triangles {first} and {second} overlap: edges of theirs on the boundary cross; cut the surfaces at each other before meshing (in Gmsh: BooleanFragments)"
+    )]
+    Crossing {
+        /// The first.
+        first: usize,
+        /// The second.
+        second: usize,
+    },
+    /// A piece of the mesh covers a part of another one.
+    #[error(
+        "triangle {inner} lies in another piece of the mesh, that of triangle {outer}: remove one of the two surfaces, or cut them at each other before meshing (in Gmsh: BooleanFragments)"
+    )]
+    Nested {
+        /// A triangle of the inner piece.
+        inner: usize,
+        /// A triangle of the outer piece.
+        outer: usize,
+    },
     /// A vertex lies inside the edge of a triangle: a hanging node.
     #[error("the mesh is not conforming: vertex {vertex} lies inside the edge ({}, {}) of triangle {triangle}; split that triangle there", edge[0], edge[1])]
     HangingVertex {
@@ -101,42 +139,43 @@ impl MeshError {
         match *self {
             Self::NoSuchVertex { triangle, .. }
             | Self::Degenerate { triangle, .. }
+            | Self::OverlapAtVertex { triangle, .. }
             | Self::HangingVertex { triangle, .. }
             | Self::CoincidentVertices { triangle, .. } => Some(triangle),
-            Self::Duplicate { first, .. } | Self::Overlap { first, .. } => Some(first),
-            Self::Empty | Self::NotFinite { .. } => None,
+            Self::Duplicate { first, .. } | Self::Overlap { first, .. } | Self::Crossing { first, .. } => {
+                Some(first)
+            }
+            Self::Nested { inner, .. } => Some(inner),
+            Self::Empty | Self::Coordinates { .. } => None,
         }
     }
-}
-
-/// An edge with a triangle on one side only, run through with the domain on its left.
-#[derive(Clone, Copy)]
-struct BoundaryEdge {
-    ends: [usize; 2],
-    triangle: usize,
 }
 
 impl Mesh {
     /// Checks `points` (shape: vertices x 2) and `triangles` (shape: triangles x 3, vertex numbers from 0).
     ///
-    /// Clockwise triangles are turned round. Vertices in no triangle are kept as [`VertexKind::Unused`]. Takes
-    /// linear time (edges at one vertex are sorted among themselves).
+    /// Clockwise triangles are turned round. Vertices in no triangle are kept as [`VertexKind::Unused`]. No two triangles of
+    /// the result overlap: they lie on opposite sides of inner edges, make at most one full turn around every vertex, and
+    /// the boundary does not touch itself but at common vertices. Takes linear time (the edges at one vertex are sorted
+    /// among themselves, and boundary edges meet only those near them).
     ///
     /// # Errors
-    /// [`MeshError`], naming the triangle, for: no triangles, coordinates that are not finite, unknown vertices,
-    /// degenerate or repeated triangles, overlaps at an edge, hanging vertices, unmerged coincident vertices.
+    /// [`MeshError`], naming the triangle, for: no triangles, coordinates out of range, unknown vertices, degenerate or
+    /// repeated triangles, overlaps, hanging vertices, unmerged coincident vertices.
     pub fn new(points: Vec<[f64; 2]>, mut triangles: Vec<[usize; 3]>) -> Result<Self, MeshError> {
         check_points(&points)?;
         orient(&points, &mut triangles)?;
-        let boundary = boundary_edges(points.len(), &triangles)?;
-        check_coincident(&points, &boundary)?;
-        check_hanging(&points, &boundary)?;
+        let boundary_edges = boundary_edges(points.len(), &triangles)?;
+        check_turns(&points, &triangles)?;
+        let boundary = Boundary::new(&points, &boundary_edges);
+        boundary.check()?;
+        check_pieces(&boundary, &triangles)?;
 
         let mut kind = vec![VertexKind::Unused; points.len()];
         for &a in triangles.iter().flatten() {
             kind[a] = VertexKind::Interior;
         }
-        for &a in boundary.iter().flat_map(|edge| &edge.ends) {
+        for &a in boundary_edges.iter().flat_map(|edge| &edge.ends) {
             kind[a] = VertexKind::Boundary;
         }
         Ok(Self { points, triangles, kind })
@@ -144,8 +183,8 @@ impl Mesh {
 }
 
 fn check_points(points: &[[f64; 2]]) -> Result<(), MeshError> {
-    match points.iter().position(|point| !point.iter().all(|x| x.is_finite())) {
-        Some(vertex) => Err(MeshError::NotFinite { vertex, point: points[vertex] }),
+    match points.iter().position(|point| !point.iter().all(|x| x.abs() < MAX_COORDINATE)) {
+        Some(vertex) => Err(MeshError::Coordinates { vertex, point: points[vertex] }),
         None => Ok(()),
     }
 }
@@ -162,7 +201,8 @@ fn orient(points: &[[f64; 2]], triangles: &mut [[usize; 3]]) -> Result<(), MeshE
         let [a, b, c] = corners.map(|a| points[a]);
         let longest_sq = distance_sq(a, b).max(distance_sq(b, c)).max(distance_sq(c, a));
         let area = twice_signed_area([a, b, c]);
-        if !(area.abs() > MIN_RELATIVE_AREA * longest_sq) {
+        let tiny = !(longest_sq * MAX_COORDINATE * MAX_COORDINATE > 1.0);
+        if tiny || !(area.abs() > MIN_RELATIVE_AREA * longest_sq) {
             return Err(MeshError::Degenerate { triangle, corners: *corners });
         }
         if area < 0.0 {
@@ -190,10 +230,8 @@ fn boundary_edges(vertices: usize, triangles: &[[usize; 3]]) -> Result<Vec<Bound
 
 /// Names two triangles on the same side of an edge (there are some: more than two sides, or two alike).
 fn overlap(triangles: &[[usize; 3]], edge: [usize; 2], sides: &[HalfEdge]) -> MeshError {
-    let (first, second) = sides
-        .windows(2)
-        .find(|pair| pair[0].reversed == pair[1].reversed)
-        .map_or((sides[0].triangle, sides[1].triangle), |pair| (pair[0].triangle, pair[1].triangle));
+    let pair = sides.windows(2).find(|pair| pair[0].reversed == pair[1].reversed);
+    let [first, second] = [0, 1].map(|k| pair.expect("sides of one kind are neighbours")[k].triangle);
     let apex = |t: usize| triangles[t].into_iter().find(|a| !edge.contains(a));
     if apex(first) == apex(second) {
         MeshError::Duplicate { first, second, corners: triangles[first] }
@@ -202,66 +240,16 @@ fn overlap(triangles: &[[usize; 3]], edge: [usize; 2], sides: &[HalfEdge]) -> Me
     }
 }
 
-/// A hanging vertex leaves, at an end of the edge on which it lies, two boundary edges in one direction: the long
-/// one of the triangle that is not split and the short one of a triangle that is.
-fn check_hanging(points: &[[f64; 2]], boundary: &[BoundaryEdge]) -> Result<(), MeshError> {
-    let direction = |from: usize, to: usize| {
-        let [p, q] = [points[from], points[to]];
-        (q[1] - p[1]).atan2(q[0] - p[0])
-    };
-    // (vertex, direction, boundary edge) of both ends of every boundary edge.
-    let mut rays: Vec<(usize, f64, usize)> = boundary
-        .iter()
-        .enumerate()
-        .flat_map(|(e, &BoundaryEdge { ends: [a, b], .. })| {
-            [(a, direction(a, b), e), (b, direction(b, a), e)]
-        })
-        .collect();
-    rays.sort_unstable_by(|p, q| p.0.cmp(&q.0).then(p.1.total_cmp(&q.1)).then(p.2.cmp(&q.2)));
-
-    for at_vertex in rays.chunk_by(|p, q| p.0 == q.0) {
-        let last_to_first = [at_vertex[at_vertex.len() - 1], at_vertex[0]];
-        for pair in at_vertex.windows(2).chain([last_to_first.as_slice()]) {
-            let turn = (pair[1].1 - pair[0].1).rem_euclid(std::f64::consts::TAU);
-            let [first, second] = [pair[0].2, pair[1].2];
-            if first != second && turn.min(std::f64::consts::TAU - turn) < MIN_BOUNDARY_ANGLE {
-                return Err(hanging(points, boundary[first], boundary[second]));
+/// The triangles around an inner vertex make one full turn, those around a boundary vertex less.
+fn check_turns(points: &[[f64; 2]], triangles: &[[usize; 3]]) -> Result<(), MeshError> {
+    let mut turn = vec![0.0; points.len()];
+    for (triangle, corners) in triangles.iter().enumerate() {
+        for (&vertex, angle) in corners.iter().zip(angles(corners.map(|a| points[a]))) {
+            turn[vertex] += angle;
+            if turn[vertex] > std::f64::consts::TAU + TURN_ROUNDING {
+                return Err(MeshError::OverlapAtVertex { vertex, triangle });
             }
         }
-    }
-    Ok(())
-}
-
-/// Of two boundary edges in one direction, the shorter one's far end hangs on the longer one.
-fn hanging(points: &[[f64; 2]], first: BoundaryEdge, second: BoundaryEdge) -> MeshError {
-    let length_sq = |edge: BoundaryEdge| distance_sq(points[edge.ends[0]], points[edge.ends[1]]);
-    let (short, long) = if length_sq(first) <= length_sq(second) { (first, second) } else { (second, first) };
-    let vertex = if long.ends.contains(&short.ends[0]) { short.ends[1] } else { short.ends[0] };
-    MeshError::HangingVertex { vertex, triangle: long.triangle, edge: long.ends }
-}
-
-/// Pieces that are not glued have their common boundary vertices twice.
-fn check_coincident(points: &[[f64; 2]], boundary: &[BoundaryEdge]) -> Result<(), MeshError> {
-    let corners = || boundary.iter().flat_map(|edge| edge.ends).map(|a| points[a]);
-    let lower = corners().fold([f64::INFINITY; 2], |l, p| [l[0].min(p[0]), l[1].min(p[1])]);
-    let extent = corners().fold(0.0, |e: f64, p| e.max(p[0] - lower[0]).max(p[1] - lower[1]));
-    let cell = extent * COINCIDENCE;
-
-    // Each vertex is filed under a cell of the size of the tolerance; a twin lies there or in a neighbouring cell.
-    let mut filed: HashMap<[i64; 2], usize> = HashMap::new();
-    for edge in boundary {
-        let vertex = edge.ends[0];
-        let place = [0, 1].map(|axis| ((points[vertex][axis] - lower[axis]) / cell).round() as i64);
-        let neighbours = (-1..=1).flat_map(|i| (-1..=1).map(move |j| [place[0] + i, place[1] + j]));
-        for neighbour in neighbours {
-            if let Some(&other) = filed.get(&neighbour)
-                && other != vertex
-            {
-                let (first, second) = (other.min(vertex), other.max(vertex));
-                return Err(MeshError::CoincidentVertices { first, second, triangle: edge.triangle });
-            }
-        }
-        filed.insert(place, vertex);
     }
     Ok(())
 }

@@ -85,9 +85,9 @@ pub enum GenerateError {
         /// Its end.
         to: [f64; 2],
     },
-    /// Holes that are not inside of the polygon, or in one another.
+    /// Rings that touch, holes that are not inside of the polygon or in one another.
     #[error(
-        "a hole lies outside of the polygon or in another hole: each must lie inside, apart from the others"
+        "a ring touches itself or another one, or a hole lies outside of the polygon or in another hole: keep them apart"
     )]
     Holes,
     /// The triangulation does not take a coordinate.
@@ -96,6 +96,11 @@ pub enum GenerateError {
         /// What the triangulation says.
         reason: String,
     },
+    /// Rounding makes vertices of a structured mesh coincide.
+    #[error(
+        "rounding makes vertices coincide: scale the domain to a moderate size, and move it nearer to the origin"
+    )]
+    Rounding,
     /// Refinement did not end.
     #[error(
         "the refinement does not end: the polygon has features much smaller than `size`; lower `min_angle` or `size`"
@@ -146,19 +151,21 @@ fn structured(domain: &Domain, cells: usize, pattern: Pattern) -> Result<Mesh, G
         Domain::Rectangle { lower, upper } => {
             let sides = [upper[0] - lower[0], upper[1] - lower[1]];
             let along = sides.map(|side| (n * (side / sides[0].min(sides[1]))).round());
-            check_vertex_estimate(vertices_per_cell * along[0] * along[1])?;
-            Ok(rectangle(lower, upper, along.map(|cells| cells as usize), pattern))
+            check_vertex_estimate(vertices_per_cell * (along[0] + 1.0) * (along[1] + 1.0))?;
+            rectangle(lower, upper, along.map(|cells| cells as usize), pattern)
         }
         Domain::LShape { half_width } => {
             check_vertex_estimate(vertices_per_cell * 3.0 * n * n)?;
-            Ok(l_shape(half_width, cells, pattern))
+            l_shape(half_width, cells, pattern)
         }
         Domain::Disk { centre, radius } => {
             check_vertex_estimate(3.0 * n * n)?;
-            Ok(disk(centre, radius, cells))
+            disk(centre, radius, cells)
         }
-        Domain::Polygon { .. } => Err(GenerateError::StructuredPolygon),
+        Domain::Polygon { .. } => return Err(GenerateError::StructuredPolygon),
     }
+    // Grids and rings are triangulations, up to rounding.
+    .map_err(|_| GenerateError::Rounding)
 }
 
 fn unstructured(domain: &Domain, size: f64, min_angle: f64) -> Result<Mesh, GenerateError> {
@@ -171,8 +178,8 @@ fn unstructured(domain: &Domain, size: f64, min_angle: f64) -> Result<Mesh, Gene
             polygon(&corners, &[], size, min_angle)
         }
         Domain::Disk { centre, radius } => {
-            let circumference = std::f64::consts::TAU * radius;
-            let edges = check_vertex_estimate(circumference / size)?.max(6);
+            check_vertex_estimate((radius / size).powi(2))?;
+            let edges = (std::f64::consts::TAU * (radius / size)).ceil().max(6.0) as usize;
             let corner = |k: usize| {
                 let angle = std::f64::consts::TAU * k as f64 / edges as f64;
                 [centre[0] + radius * angle.cos(), centre[1] + radius * angle.sin()]
@@ -191,3 +198,6 @@ pub(super) fn check_vertex_estimate(vertices: f64) -> Result<usize, GenerateErro
         Err(GenerateError::TooLarge { vertices })
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -65,6 +65,10 @@ pub fn polygon(
             *number
         }));
     }
+    // A hole that touches the boundary can take everything with it.
+    if triangles.is_empty() {
+        return Err(GenerateError::Holes);
+    }
     let mesh = Mesh::new(points, triangles)?;
     if !((mesh.area() - area).abs() <= AREA_TOLERANCE * area) {
         return Err(GenerateError::Holes);
@@ -167,6 +171,7 @@ mod tests {
             (polygon(&outer, &[square(0.9, 0.4, 0.2)], 0.1, 25.0), "cross"),
             (polygon(&outer, &[square(2.0, 2.0, 0.2)], 0.1, 25.0), "hole"),
             (polygon(&outer, &[square(0.0, 0.0, 0.5)], 0.1, 25.0), "twice"),
+            (polygon(&outer, &[square(0.0, 0.25, 0.5)], 0.1, 25.0), "hole"),
         ];
         for (k, (result, word)) in refused.into_iter().enumerate() {
             let message = result.expect_err(&format!("entry {k}")).to_string();

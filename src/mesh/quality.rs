@@ -30,22 +30,71 @@ impl Mesh {
         for t in 0..self.triangles().len() {
             let corners = self.corners(t);
             let twice_area = twice_signed_area(corners);
-            // lengths[i] is opposite to corner i
             let lengths = [1, 2, 0].map(|i| distance_sq(corners[i], corners[(i + 1) % 3]).sqrt());
             let perimeter: f64 = lengths.iter().sum();
             let longest = lengths.into_iter().fold(0.0, f64::max);
-            for i in 0..3 {
-                let [p, q, r] = [corners[i], corners[(i + 1) % 3], corners[(i + 2) % 3]];
-                let dot = (q[0] - p[0]) * (r[0] - p[0]) + (q[1] - p[1]) * (r[1] - p[1]);
-                let angle = twice_area.atan2(dot).to_degrees();
+            for (angle, length) in angles(corners).map(f64::to_degrees).into_iter().zip(lengths) {
                 quality.min_angle = quality.min_angle.min(angle);
                 quality.max_angle = quality.max_angle.max(angle);
-                quality.h_min = quality.h_min.min(lengths[i]);
+                quality.h_min = quality.h_min.min(length);
             }
             quality.h_max = quality.h_max.max(longest);
             // The inscribed circle has the diameter rho = 4 area / perimeter.
             quality.shape_regularity = quality.shape_regularity.max(longest * perimeter / (2.0 * twice_area));
         }
         quality
+    }
+}
+
+/// The angles at the corners of a triangle, radians.
+pub(super) fn angles(corners: [[f64; 2]; 3]) -> [f64; 3] {
+    let twice_area = twice_signed_area(corners);
+    [0, 1, 2].map(|i| {
+        let [p, q, r] = [corners[i], corners[(i + 1) % 3], corners[(i + 2) % 3]];
+        twice_area.atan2((q[0] - p[0]) * (r[0] - p[0]) + (q[1] - p[1]) * (r[1] - p[1]))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rounding of a few operations on numbers of order one, relative.
+    const ROUNDING: f64 = 1e-14;
+
+    fn quality_of(triangles: &[[[f64; 2]; 3]]) -> MeshQuality {
+        let corners = (0..triangles.len()).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+        Mesh::new(triangles.concat(), corners).unwrap().quality()
+    }
+
+    #[track_caller]
+    fn assert_close(found: MeshQuality, expected: [f64; 5]) {
+        let MeshQuality { min_angle, max_angle, h_min, h_max, shape_regularity } = found;
+        for (found, expected) in
+            [min_angle, max_angle, h_min, h_max, shape_regularity].into_iter().zip(expected)
+        {
+            assert!((found / expected - 1.0).abs() < ROUNDING, "{found} is not {expected}");
+        }
+    }
+
+    #[test]
+    fn known_triangles() {
+        let equilateral = [[0.0, 0.0], [2.0, 0.0], [1.0, 3f64.sqrt()]];
+        let right = [[10.0, 0.0], [11.0, 0.0], [10.0, 1.0]];
+        let (root_2, root_3) = (2f64.sqrt(), 3f64.sqrt());
+        assert_close(quality_of(&[equilateral]), [60.0, 60.0, 2.0, 2.0, root_3]);
+        // h / rho with rho = 2 |T| / (half of the perimeter) = 2 / (2 + sqrt 2)
+        assert_close(quality_of(&[right]), [45.0, 90.0, 1.0, root_2, 1.0 + root_2]);
+        // Of several triangles the worst of each counts.
+        assert_close(quality_of(&[equilateral, right]), [45.0, 90.0, 1.0, 2.0, 1.0 + root_2]);
+        assert!(quality_of(&[right]) != quality_of(&[equilateral]));
+    }
+
+    /// The obtuse triangle with the sides 3, 5, 7 has the angle 120 degrees and the area 15 sqrt(3) / 4.
+    #[test]
+    fn an_obtuse_triangle() {
+        let obtuse = [[0.0, 0.0], [5.0, 0.0], [-1.5, 1.5 * 3f64.sqrt()]];
+        let smallest = (13f64 / 14.0).acos().to_degrees();
+        assert_close(quality_of(&[obtuse]), [smallest, 120.0, 3.0, 7.0, 7.0 * 15.0 / (15.0 * 3f64.sqrt())]);
     }
 }

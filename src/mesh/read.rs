@@ -40,3 +40,74 @@ impl Mesh {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A square around its centre in four triangles, elements 11 to 14, and a vertex in no triangle.
+    const SQUARE: &str = "$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$Nodes
+6
+1 0 0 0
+2 1 0 0
+3 1 1 0
+4 0 1 0
+9 7 7 0
+5 0.5 0.5 0
+$EndNodes
+$Elements
+4
+11 2 2 1 1 1 2 5
+12 2 2 1 1 2 3 5
+13 2 2 1 1 3 4 5
+14 2 2 1 1 1 5 4
+$EndElements
+";
+
+    fn read(text: &str) -> Result<Mesh, ReadError> {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        std::fs::write(file.path(), text).unwrap();
+        Mesh::read_gmsh(file.path())
+    }
+
+    #[test]
+    fn vertices_keep_their_order_and_triangles_are_turned() {
+        use super::super::VertexKind::{Boundary, Interior, Unused};
+        let mesh = read(SQUARE).unwrap();
+        assert_eq!(mesh.kind(), [Boundary, Boundary, Boundary, Boundary, Unused, Interior]);
+        assert_eq!(mesh.points()[4..], [[7.0, 7.0], [0.5, 0.5]]);
+        assert_eq!(mesh.triangles()[2..], [[2, 3, 5], [0, 5, 3]]);
+        assert_eq!(mesh.area(), 1.0);
+    }
+
+    #[test]
+    fn faults_of_the_mesh_are_named_by_gmshs_numbers_too() {
+        let table = [
+            (
+                "13 2 2 1 1 3 4 5",
+                "13 2 2 1 1 3 4 4",
+                "triangle 2 (vertices 2, 3, 3) is degenerate: its corners coincide or lie on one line; remove it and mesh again (triangle 2 is Gmsh's element 13)",
+            ),
+            (
+                "13 2 2 1 1 3 4 5",
+                "13 2 2 1 1 1 2 5",
+                "triangles 0 and 2 are the same (vertices 0, 1, 5): remove one (triangle 0 is Gmsh's element 11)",
+            ),
+        ];
+        for (from, to, message) in table {
+            let error = read(&SQUARE.replace(from, to)).expect_err(message);
+            assert_eq!(error.to_string(), message);
+        }
+    }
+
+    #[test]
+    fn what_is_no_mesh_file_is_told_from_what_cannot_be_read() {
+        assert!(matches!(read(&SQUARE.replace("2.2", "3.0")), Err(ReadError::Gmsh(_))));
+        let nowhere = Mesh::read_gmsh(Path::new("no such folder/plate.msh")).expect_err("not there");
+        assert!(matches!(nowhere, ReadError::Io(_)));
+        assert!(nowhere.to_string().starts_with("cannot read the mesh file: "), "{nowhere}");
+    }
+}

@@ -46,3 +46,118 @@ impl Mesh {
         Refinement { mesh: Mesh { points, triangles, kind }, parents }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::mesh::samples::{irregular, renumbered, square, square_without};
+
+    /// Rounding of sums over the triangles of small meshes of size one.
+    const ROUNDING: f64 = 1e-12;
+
+    fn count(mesh: &Mesh, kind: VertexKind) -> usize {
+        mesh.kind().iter().filter(|&&k| k == kind).count()
+    }
+
+    /// A square with a hole, two holes that touch, components that touch, triangles of all shapes, an unused vertex.
+    fn samples() -> Vec<Mesh> {
+        let with_unused = [irregular(3).points(), &[[0.5, 0.5]]].concat();
+        vec![
+            square(3),
+            irregular(4),
+            square_without(3, |i, j| (i, j) == (1, 1)),
+            square_without(4, |i, j| i == j && (i == 1 || i == 2)),
+            square_without(4, |i, j| (i + j) % 2 == 0),
+            Mesh::new(with_unused, irregular(3).triangles().to_vec()).unwrap(),
+        ]
+    }
+
+    #[test]
+    fn triangles_vertices_and_boundary_are_counted_by_eulers_formula() {
+        for coarse in samples() {
+            let Refinement { mesh: fine, parents } = coarse.refine();
+            let (vertices, triangles) = (coarse.points().len(), coarse.triangles().len());
+            // Each vertex of the boundary starts as many edges of it as there are sectors of the domain at it.
+            let boundary =
+                HalfEdges::new(vertices, coarse.triangles()).edges().filter(|edge| edge.2.len() == 1).count();
+            let edges = (3 * triangles + boundary) / 2;
+            assert_eq!(fine.triangles().len(), 4 * triangles);
+            assert_eq!(fine.points().len(), vertices + edges);
+            assert_eq!(parents.len(), edges);
+            assert_eq!(count(&fine, VertexKind::Boundary), count(&coarse, VertexKind::Boundary) + boundary);
+            assert_eq!(count(&fine, VertexKind::Unused), count(&coarse, VertexKind::Unused));
+        }
+    }
+
+    #[test]
+    fn the_result_is_a_mesh_with_the_same_area_and_angles() {
+        for coarse in samples() {
+            let fine = coarse.refine().mesh;
+            let checked = Mesh::new(fine.points().to_vec(), fine.triangles().to_vec()).unwrap();
+            assert_eq!(checked.triangles(), fine.triangles(), "counterclockwise");
+            assert_eq!(checked.kind(), fine.kind());
+            assert!((fine.area() - coarse.area()).abs() < ROUNDING);
+            let (before, after) = (coarse.quality(), fine.quality());
+            assert!((after.min_angle / before.min_angle - 1.0).abs() < ROUNDING);
+            assert!((after.max_angle / before.max_angle - 1.0).abs() < ROUNDING);
+            assert!((2.0 * after.h_max / before.h_max - 1.0).abs() < ROUNDING);
+            assert!((2.0 * after.h_min / before.h_min - 1.0).abs() < ROUNDING);
+        }
+        assert_ne!(square(2).refine().mesh.quality(), square(2).quality());
+    }
+
+    #[test]
+    fn old_vertices_stay_and_new_ones_are_the_midpoints_of_their_parents() {
+        for coarse in samples() {
+            let Refinement { mesh: fine, parents } = coarse.refine();
+            let (old, new) = fine.points().split_at(coarse.points().len());
+            assert_eq!(old, coarse.points());
+            assert_eq!(fine.kind()[..old.len()], *coarse.kind());
+            for (&[a, b], &midpoint) in parents.iter().zip(new) {
+                let [p, q] = [old[a], old[b]];
+                assert_eq!(midpoint, [0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])]);
+                assert!(coarse.triangles().iter().any(|t| t.contains(&a) && t.contains(&b)), "an edge");
+            }
+            let mut different = parents.clone();
+            different.sort_unstable();
+            different.dedup();
+            assert_eq!(different.len(), parents.len(), "each edge once");
+        }
+    }
+
+    #[test]
+    fn one_triangle_becomes_four() {
+        let corners = vec![[0.0, 0.0], [2.0, 0.0], [0.0, 2.0]];
+        let Refinement { mesh, parents } = Mesh::new(corners, vec![[0, 1, 2]]).unwrap().refine();
+        assert_eq!(parents, [[0, 1], [0, 2], [1, 2]]);
+        assert_eq!(mesh.points()[3..], [[1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]);
+        assert_eq!(mesh.triangles(), [[0, 3, 4], [3, 1, 5], [4, 5, 2], [3, 5, 4]]);
+    }
+
+    /// The triangles as points, in an order that does not depend on the numbering.
+    fn triangles_as_points(mesh: &Mesh) -> Vec<[[u64; 2]; 3]> {
+        let bits = |t: usize| {
+            let mut corners = mesh.corners(t).map(|point| point.map(f64::to_bits));
+            corners.sort_unstable();
+            corners
+        };
+        let mut triangles: Vec<_> = (0..mesh.triangles().len()).map(bits).collect();
+        triangles.sort_unstable();
+        triangles
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(32))]
+
+        #[test]
+        fn refining_commutes_with_renumbering(cells in 1..6usize, seed: u64) {
+            let mesh = irregular(cells);
+            let (other, _) = renumbered(&mesh, seed);
+            let (fine, other_fine) = (mesh.refine().mesh, other.refine().mesh);
+            prop_assert!(triangles_as_points(&fine) == triangles_as_points(&other_fine));
+            prop_assert!(triangles_as_points(&fine) != triangles_as_points(&mesh.refine().mesh.refine().mesh));
+        }
+    }
+}

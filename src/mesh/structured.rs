@@ -1,6 +1,6 @@
 //! Structured meshes: rectangle, L-shape, disk.
 
-use super::Mesh;
+use super::{Mesh, MeshError};
 
 /// How a rectangular cell is divided.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -15,17 +15,28 @@ pub enum Pattern {
 /// The rectangle `(lower, upper)` in `cells[0] x cells[1]` cells. Vertices run along `x` first; the cell centres of the
 /// crossed pattern follow.
 ///
+/// # Errors
+/// When rounding makes vertices coincide: extreme coordinates, or cells that are tiny for their distance from the origin.
+///
 /// # Panics
 /// When a side is not positive or a number of cells is zero.
-pub fn rectangle(lower: [f64; 2], upper: [f64; 2], cells: [usize; 2], pattern: Pattern) -> Mesh {
+pub fn rectangle(
+    lower: [f64; 2],
+    upper: [f64; 2],
+    cells: [usize; 2],
+    pattern: Pattern,
+) -> Result<Mesh, MeshError> {
     grid(lower, upper, cells, pattern, |_, _| true)
 }
 
 /// The L-shape `(-a, a)^2` without `[0, a] x [-a, 0]`, `cells` cells along its half width `a`.
 ///
+/// # Errors
+/// As [`rectangle`].
+///
 /// # Panics
 /// When `half_width` is not positive or `cells` is zero.
-pub fn l_shape(half_width: f64, cells: usize, pattern: Pattern) -> Mesh {
+pub fn l_shape(half_width: f64, cells: usize, pattern: Pattern) -> Result<Mesh, MeshError> {
     let corner = [half_width; 2];
     grid(corner.map(|a| -a), corner, [2 * cells; 2], pattern, |i, j| i < cells || j >= cells)
 }
@@ -37,7 +48,7 @@ fn grid(
     [nx, ny]: [usize; 2],
     pattern: Pattern,
     inside: impl Fn(usize, usize) -> bool,
-) -> Mesh {
+) -> Result<Mesh, MeshError> {
     assert!(nx > 0 && ny > 0 && lower[0] < upper[0] && lower[1] < upper[1], "an empty grid");
     // Ends are met exactly, and a dyadic grid on the unit square has exact coordinates.
     let coordinate = |axis: usize, k: f64, n: usize| {
@@ -72,15 +83,18 @@ fn grid(
             }
         }
     }
-    Mesh::new(points, triangles).expect("a grid is a triangulation")
+    Mesh::new(points, triangles)
 }
 
 /// A disk, as `rings` rings of triangles around its centre; ring `k` has `6 k` vertices. The domain of the mesh is the
 /// polygon inscribed in the disk.
 ///
+/// # Errors
+/// As [`rectangle`].
+///
 /// # Panics
 /// When `radius` is not positive or `rings` is zero.
-pub fn disk(centre: [f64; 2], radius: f64, rings: usize) -> Mesh {
+pub fn disk(centre: [f64; 2], radius: f64, rings: usize) -> Result<Mesh, MeshError> {
     assert!(rings > 0 && radius > 0.0, "an empty disk");
     let first = |ring: usize| if ring == 0 { 0 } else { 1 + 3 * ring * (ring - 1) };
     let mut points = vec![centre];
@@ -103,5 +117,8 @@ pub fn disk(centre: [f64; 2], radius: f64, rings: usize) -> Mesh {
             }
         }
     }
-    Mesh::new(points, triangles).expect("rings make a triangulation")
+    Mesh::new(points, triangles)
 }
+
+#[cfg(test)]
+mod tests;

@@ -24,8 +24,9 @@ pub use decoupled::Interface;
 pub use parameter::{CaseError, Parameter, Range};
 pub use solution::ExactSolution;
 
+use super::nearest;
 use decoupled::Decoupled;
-use parameter::{Values, listed, nearest};
+use parameter::{Values, listed};
 
 /// A problem with a known solution. The name in a case file stands in brackets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -90,7 +91,7 @@ impl Case {
         let known = Self::ALL.into_iter().map(Self::name);
         Self::ALL.into_iter().find(|case| case.name() == name).ok_or_else(|| CaseError::UnknownCase {
             name: name.to_owned(),
-            nearest: nearest(name, known.clone()),
+            nearest: nearest(name, known.clone()).map_or("", |(known, _)| known),
             known: listed(known),
         })
     }

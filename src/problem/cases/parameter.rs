@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use crate::problem::nearest;
+
 /// Why there is no such exact solution.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum CaseError {
@@ -137,7 +139,7 @@ impl Values {
                 return Err(CaseError::UnknownParameter {
                     case,
                     name: name.clone(),
-                    nearest: nearest(name, known.iter().map(|p| p.name)),
+                    nearest: nearest(name, known.iter().map(|p| p.name)).map_or("", |(known, _)| known),
                     known: listed(known.iter().map(|p| p.name)),
                 });
             };
@@ -170,14 +172,6 @@ impl Values {
     pub(super) fn out_of_range(&self, name: &'static str, range: String) -> CaseError {
         CaseError::OutOfRange { case: self.case, name, value: self.get(name), range }
     }
-}
-
-/// The known name that takes the fewest edits to reach from `name`, upper and lower case alike.
-pub(super) fn nearest(name: &str, known: impl Iterator<Item = &'static str>) -> &'static str {
-    let name = name.to_lowercase();
-    known
-        .min_by_key(|candidate| strsim::damerau_levenshtein(&name, &candidate.to_lowercase()))
-        .expect("there is at least one known name")
 }
 
 /// The known names, separated by commas.

@@ -7,6 +7,7 @@ use std::f64::consts::PI;
 use super::ExpressionError;
 use super::lexer::{Level, Lexeme, Lexer, Token};
 use super::program::{Builder, Instruction, Program};
+use crate::problem::nearest;
 
 /// How many arguments a function takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -294,24 +295,19 @@ fn remedy(name: &str) -> String {
         "pow" => "write `a^b`".to_string(),
         "e" => "write `exp(1)`".to_string(),
         "xy" => "for a product write `x*y`".to_string(),
-        _ => match nearest(name) {
+        _ => match meant(name) {
             Some(known) => format!("did you mean `{known}`?"),
             None => "the variables are `x` and `y`".to_string(),
         },
     }
 }
 
-/// The known name that differs in the fewest letters: in at most a third of them, or in one.
-fn nearest(name: &str) -> Option<&'static str> {
-    let lower = name.to_ascii_lowercase();
+/// The known name that is nearest, when it differs in at most a third of the letters, or in one.
+fn meant(name: &str) -> Option<&'static str> {
     let functions = FUNCTIONS.iter().map(|(known, ..)| *known);
     let values = VALUES.iter().map(|(known, _)| *known);
     let words = ["and", "or", "not"];
-    functions
-        .chain(values)
-        .chain(words)
-        .map(|known| (strsim::osa_distance(&lower, known), known))
-        .filter(|&(distance, _)| distance <= (name.len() / 3).max(1) && distance < name.len())
-        .min_by_key(|&(distance, _)| distance)
-        .map(|(_, known)| known)
+    nearest(name, functions.chain(values).chain(words))
+        .filter(|&(_, slips)| slips <= (name.len() / 3).max(1) && slips < name.len())
+        .map(|(known, _)| known)
 }

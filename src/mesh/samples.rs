@@ -1,0 +1,82 @@
+//! Sample meshes for the tests of all layers.
+
+use super::{Mesh, Pattern, VertexKind, rectangle};
+
+/// Pseudorandom numbers (xorshift64*, Vigna 2016) that are the same in every run.
+pub(crate) struct Random(u64);
+
+impl Random {
+    pub(crate) fn new(seed: u64) -> Self {
+        // Mixed, so that neighbouring seeds start apart; zero is the one state that the generator never leaves.
+        Self((seed ^ 0x9e37_79b9_7f4a_7c15).wrapping_mul(0xbf58_476d_1ce4_e5b9) | 1)
+    }
+
+    fn next(&mut self) -> u64 {
+        self.0 ^= self.0 >> 12;
+        self.0 ^= self.0 << 25;
+        self.0 ^= self.0 >> 27;
+        self.0.wrapping_mul(0x2545_f491_4f6c_dd1d)
+    }
+
+    /// A number of `[lower, upper)`.
+    pub(crate) fn between(&mut self, lower: f64, upper: f64) -> f64 {
+        let unit = (self.next() >> 11) as f64 / (1u64 << 53) as f64;
+        lower + (upper - lower) * unit
+    }
+
+    /// A number of `0..n`.
+    pub(crate) fn below(&mut self, n: usize) -> usize {
+        (self.next() % n as u64) as usize
+    }
+
+    /// The numbers `0..n` in any order.
+    pub(crate) fn permutation(&mut self, n: usize) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..n).collect();
+        for k in (1..n).rev() {
+            order.swap(k, self.below(k + 1));
+        }
+        order
+    }
+}
+
+/// The unit square in `cells x cells` cells of two right triangles.
+pub(crate) fn square(cells: usize) -> Mesh {
+    rectangle([0.0, 0.0], [1.0, 1.0], [cells; 2], Pattern::Right).unwrap()
+}
+
+/// The unit square in triangles of all shapes: [`square`] with every inner vertex moved by up to a fifth of a cell.
+pub(crate) fn irregular(cells: usize) -> Mesh {
+    let regular = square(cells);
+    let mut random = Random::new(cells as u64);
+    let reach = 0.2 / cells as f64;
+    let moved = regular.points().iter().zip(regular.kind()).map(|(&point, kind)| match kind {
+        VertexKind::Interior => point.map(|x| x + random.between(-reach, reach)),
+        _ => point,
+    });
+    Mesh::new(moved.collect(), regular.triangles().to_vec()).unwrap()
+}
+
+/// The unit square in `cells x cells` cells without those that `removed` names by column and row.
+pub(crate) fn square_without(cells: usize, removed: impl Fn(usize, usize) -> bool) -> Mesh {
+    let square = square(cells);
+    let kept = square.triangles().chunks(2).enumerate().filter(|(k, _)| !removed(k % cells, k / cells));
+    Mesh::new(square.points().to_vec(), kept.flat_map(|(_, cell)| cell.to_vec()).collect()).unwrap()
+}
+
+/// The same mesh with vertices and triangles in another order, the corners of triangles turned and exchanged; and the new
+/// number of each vertex.
+pub(crate) fn renumbered(mesh: &Mesh, seed: u64) -> (Mesh, Vec<usize>) {
+    let mut random = Random::new(seed);
+    let number = random.permutation(mesh.points().len());
+    let mut points = mesh.points().to_vec();
+    for (a, &point) in mesh.points().iter().enumerate() {
+        points[number[a]] = point;
+    }
+    let order = random.permutation(mesh.triangles().len());
+    let shuffled = |t: &usize| {
+        let corners = mesh.triangles()[*t].map(|a| number[a]);
+        let corner = random.permutation(3);
+        [corners[corner[0]], corners[corner[1]], corners[corner[2]]]
+    };
+    (Mesh::new(points, order.iter().map(shuffled).collect()).unwrap(), number)
+}

@@ -1,0 +1,40 @@
+//! What the integration tests share.
+
+use std::collections::BTreeMap;
+
+use membrane_contact::discretization::Discretization;
+use membrane_contact::problem::{Case, ExactSolution};
+use membrane_contact::qp::Clarabel;
+#[cfg(feature = "osqp")]
+use membrane_contact::qp::Osqp;
+use membrane_contact::solver::{Candidate, ContactSolver, QpSolver, SolverOptions};
+
+/// What is asked of backends and of the certificate: the program's default.
+pub const TOLERANCE: f64 = 1e-8;
+
+/// A solver for each backend of this build.
+pub fn solvers() -> Vec<QpSolver> {
+    vec![
+        QpSolver::new(Clarabel),
+        #[cfg(feature = "osqp")]
+        QpSolver::new(Osqp),
+    ]
+}
+
+/// Solves at [`TOLERANCE`].
+pub fn solve(solver: &mut QpSolver, d: &Discretization, polish: bool) -> Candidate {
+    let options = SolverOptions { tolerance: TOLERANCE, polish, ..SolverOptions::default() };
+    solver.solve(d, &options).expect("the backend runs")
+}
+
+/// A built-in case with some parameters chosen.
+pub fn exact(case: Case, parameters: &[(&str, f64)]) -> ExactSolution {
+    let parameters: BTreeMap<String, f64> =
+        parameters.iter().map(|&(name, value)| (name.to_owned(), value)).collect();
+    case.solution(&parameters).expect("parameters in range")
+}
+
+/// The largest distance of two functions over the same points.
+pub fn distance(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}

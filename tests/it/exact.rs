@@ -1,0 +1,164 @@
+//! Solutions that are known exactly.
+
+use membrane_contact::action::{ContactSolution, certify};
+use membrane_contact::discretization::Discretization;
+use membrane_contact::mesh::{Mesh, Pattern, rectangle};
+use membrane_contact::problem::{Case, ExactSolution};
+use membrane_contact::solver::ContactSolver;
+
+use crate::common::{TOLERANCE, distance, exact, solve, solvers};
+
+/// Nodal error of a nodally exact case after the polish.
+const NODALLY_EXACT: f64 = 1e-10;
+
+/// Error of the action there, force per area: rounding over the mesh size squared.
+const ACTION_EXACT: f64 = 1e-8;
+
+fn unit_square(cells: usize) -> Mesh {
+    rectangle([0.0, 0.0], [1.0, 1.0], [cells, cells], Pattern::Right).unwrap()
+}
+
+fn nodal<T>(mesh: &Mesh, f: impl Fn(f64, f64) -> T) -> Vec<T> {
+    mesh.points().iter().map(|&[x, y]| f(x, y)).collect()
+}
+
+/// The largest nodal error of both displacements.
+fn nodal_error(mesh: &Mesh, exact: &ExactSolution, displacement: &[Vec<f64>; 2]) -> f64 {
+    let [u1, u2] = [0, 1].map(|i| nodal(mesh, |x, y| exact.u(x, y)[i]));
+    distance(&u1, &displacement[0]).max(distance(&u2, &displacement[1]))
+}
+
+/// Certified and polished solutions of all backends.
+fn solutions(exact: &ExactSolution, mesh: &Mesh) -> Vec<ContactSolution> {
+    let problem = exact.problem().expect("a case has valid data");
+    let d = Discretization::new(&problem, mesh).expect("the data are finite");
+    let solve = |mut solver| certify(&d, solve(&mut solver, &d, true), TOLERANCE).expect("certified");
+    solvers().into_iter().map(solve).collect()
+}
+
+/// `q | q/2 | 0` left of, on and right of the line `x = x0`.
+fn strip_action(mesh: &Mesh, x0: f64, q: f64) -> Vec<f64> {
+    let inside = |x: f64, y: f64| 0.0 < x && x < 1.0 && 0.0 < y && y < 1.0;
+    let action = |x: f64| {
+        if x < x0 {
+            q
+        } else if x == x0 {
+            0.5 * q
+        } else {
+            0.0
+        }
+    };
+    nodal(mesh, |x, y| if inside(x, y) { action(x) } else { 0.0 })
+}
+
+#[test]
+fn the_strip_is_nodally_exact_and_so_is_its_action() {
+    let (x0, a0, mu1, mu2) = (0.5, 2.0, 1.0, 3.0);
+    let q = 2.0 * a0 * mu1 * mu2 / (mu1 + mu2);
+    let exact = exact(Case::Strip, &[("x0", x0), ("A0", a0), ("mu1", mu1), ("mu2", mu2)]);
+    for cells in [8, 32, 64] {
+        let mesh = unit_square(cells);
+        for solution in solutions(&exact, &mesh) {
+            assert!(nodal_error(&mesh, &exact, solution.displacement()) < NODALLY_EXACT);
+            assert!(distance(solution.lambda(), &strip_action(&mesh, x0, q)) < ACTION_EXACT);
+        }
+        // The free boundary half a cell further is another problem: the comparison sees it.
+        let shifted = strip_action(&mesh, x0 + 0.5 / cells as f64, q);
+        assert!(distance(&strip_action(&mesh, x0, q), &shifted) > ACTION_EXACT);
+    }
+}
+
+/// The negative twin of the exactness above, and the figures that the README shows (`-- --nocapture` prints them).
+#[test]
+fn an_interior_point_answer_is_not_exact_before_the_polish() {
+    let exact = exact(Case::Strip, &[]);
+    let problem = exact.problem().unwrap();
+    println!("backend  cells  polish  error of u  error of lambda");
+    for cells in [8, 32, 64] {
+        let mesh = unit_square(cells);
+        let d = Discretization::new(&problem, &mesh).unwrap();
+        for mut solver in solvers() {
+            for polish in [false, true] {
+                let candidate = solve(&mut solver, &d, polish);
+                let error = nodal_error(&mesh, &exact, &candidate.displacement);
+                let solution = certify(&d, candidate, TOLERANCE).expect("certified either way");
+                let action_error = distance(solution.lambda(), &strip_action(&mesh, 0.5, 1.5));
+                println!("{:8} {cells:5}  {polish:6}  {error:10.1e}  {action_error:15.1e}", solver.name());
+                if solver.name() == "clarabel" {
+                    assert_eq!(
+                        action_error < ACTION_EXACT,
+                        polish,
+                        "the polish makes it exact: {action_error}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn full_contact_touches_everywhere_and_nowhere_else_is_pushed() {
+    let exact = exact(Case::FullContact, &[]);
+    let mesh = unit_square(16);
+    let d_interior = 15 * 15;
+    for solution in solutions(&exact, &mesh) {
+        assert_eq!(solution.contact().iter().filter(|&&contact| contact).count(), d_interior);
+        assert!(solution.gap().iter().all(|&gap| gap == 0.0), "the membranes are one");
+        for (a, &[x, y]) in mesh.points().iter().enumerate().filter(|&(a, _)| solution.contact()[a]) {
+            // lambda = 10 (1 + x y) is not constant: its mean over the weighted patch differs by O(h^2)
+            let h = 1.0 / 16.0;
+            assert!((solution.lambda()[a] - exact.lambda(x, y)).abs() < 10.0 * h * h);
+        }
+    }
+}
+
+#[test]
+fn apart_the_membranes_do_not_push() {
+    let exact = exact(Case::NoContact, &[]);
+    for solution in solutions(&exact, &unit_square(16)) {
+        assert!(solution.contact().iter().all(|&contact| !contact));
+        assert!(solution.lambda().iter().all(|&lambda| lambda == 0.0));
+        assert_eq!((solution.total_force(), solution.contact_area()), (0.0, 0.0));
+    }
+}
+
+#[test]
+fn everywhere_biactive_does_not_cycle() {
+    for q in [0.0, 1e-12, 1e-8] {
+        let exact = exact(Case::Biactive, &[("q", q)]);
+        let mesh = unit_square(16);
+        for solution in solutions(&exact, &mesh) {
+            assert!(distance(&solution.displacement()[0], &solution.displacement()[1]) < NODALLY_EXACT);
+            assert!(solution.contact().iter().filter(|&&contact| contact).count() == 15 * 15);
+            // q (1 + x y) lies between q and 2 q; the loads of size 10 leave their rounding, over h^2
+            let rounding = 1e-11;
+            assert!(
+                solution.lambda().iter().all(|&lambda| -rounding < lambda && lambda < 2.0 * q + rounding)
+            );
+        }
+    }
+}
+
+#[test]
+fn curved_free_boundaries_are_found_to_the_order_of_the_mesh_size() {
+    for (case, parameters) in [(Case::Circle, [("R", 0.3)].as_slice()), (Case::Annulus, &[])] {
+        let exact = exact(case, parameters);
+        let errors = [16, 32].map(|cells| {
+            let mesh = unit_square(cells);
+            let errors: Vec<f64> = solutions(&exact, &mesh)
+                .iter()
+                .map(|solution| nodal_error(&mesh, &exact, solution.displacement()))
+                .collect();
+            errors.into_iter().fold(0.0, f64::max)
+        });
+        assert!(errors[1] < 0.4 * errors[0], "{case}: second order, nearly: {errors:?}");
+    }
+}
+
+#[test]
+fn a_mesh_without_interior_vertices_has_a_solution() {
+    let mesh = Mesh::new(vec![[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], vec![[0, 1, 2]]).unwrap();
+    for solution in solutions(&exact(Case::NoContact, &[]), &mesh) {
+        assert_eq!(solution.displacement(), &[vec![1.0, 2.0, 1.0], vec![0.0; 3]]);
+    }
+}

@@ -1,0 +1,16 @@
+//! The integration tests, in one binary.
+
+mod common;
+
+mod backends;
+#[cfg(feature = "cli")]
+mod bad_input;
+mod custom_backend;
+mod exact;
+mod layers;
+#[cfg(feature = "cli")]
+mod plate;
+#[cfg(feature = "cli")]
+mod program;
+#[cfg(feature = "cli")]
+mod readme;
