@@ -262,3 +262,6 @@ pub enum DiscretizationError {
         value: f64,
     },
 }
+
+#[cfg(test)]
+mod tests;

@@ -2,8 +2,10 @@
 
 mod adjacency;
 mod check;
+mod dual;
 mod generate;
 pub mod gmsh;
+mod midpoints;
 mod polygon;
 mod quality;
 mod read;
@@ -13,6 +15,7 @@ pub(crate) mod samples;
 mod structured;
 
 pub use check::MeshError;
+pub use dual::{DualMesh, SubTriangulation};
 pub use generate::{GenerateError, MeshSize, generate};
 pub use polygon::polygon;
 pub use quality::MeshQuality;

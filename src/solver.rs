@@ -1,10 +1,12 @@
 //! Solvers of the reduced discrete problem (3.4).
 
+mod active_set;
 mod cholesky;
 mod decoupled;
 mod polish;
 mod qp_solver;
 
+pub use active_set::ActiveSet;
 pub use polish::PolishReport;
 pub use qp_solver::QpSolver;
 
@@ -82,7 +84,7 @@ pub struct Statistics {
     pub setup_seconds: f64,
     /// Seconds spent iterating, the polish included.
     pub solve_seconds: f64,
-    /// What the polish did; `None` when it was not asked for.
+    /// What the polish did; `None` when it was not asked for or has nothing to do.
     pub polish: Option<PolishReport>,
 }
 
@@ -92,6 +94,11 @@ pub enum SolverError {
     /// The quadratic programming backend cannot.
     #[error(transparent)]
     Backend(#[from] BackendError),
+    /// A linear system cannot be factored.
+    #[error(
+        "the stiffness matrix cannot be factored: memory is short, or the mesh has triangles that are too thin"
+    )]
+    NotFactored,
     /// The tolerance is out of range.
     #[error("the tolerance is {0}: give a number between 0 and 1")]
     Tolerance(f64),

@@ -44,7 +44,7 @@ pub(super) enum Command {
 pub(super) struct SolveArguments {
     #[command(flatten)]
     pub(super) case: CaseArguments,
-    /// Solver, in place of the case file's [clarabel, osqp]
+    /// Solver, not the case file's: clarabel, osqp, active-set
     #[arg(long, value_name = "NAME")]
     pub(super) backend: Option<BackendName>,
     /// Folder for the results [default: out/CASE]

@@ -66,18 +66,26 @@ pub enum BackendName {
     Clarabel,
     /// The operator-splitting solver OSQP.
     Osqp,
+    /// The active set method on the decoupled problem.
+    ActiveSet,
 }
 
 impl BackendName {
     /// Every name.
-    pub const ALL: [Self; 2] = [Self::Clarabel, Self::Osqp];
+    pub const ALL: [Self; 3] = [Self::Clarabel, Self::Osqp, Self::ActiveSet];
 
     /// The name in case files.
     pub fn as_str(self) -> &'static str {
         match self {
             Self::Clarabel => "clarabel",
             Self::Osqp => "osqp",
+            Self::ActiveSet => "active-set",
         }
+    }
+
+    /// Whether its answers are polished; the others are exact as they are.
+    pub fn is_polished(self) -> bool {
+        self != Self::ActiveSet
     }
 
     /// Whether this build contains it.

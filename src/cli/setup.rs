@@ -12,7 +12,7 @@ use crate::discretization::Discretization;
 use crate::mesh::{Mesh, ReadError, generate};
 use crate::output::{Seconds, WriteSeek, write_atomically};
 use crate::qp::Clarabel;
-use crate::solver::{ContactSolver, QpSolver, SolverOptions};
+use crate::solver::{ActiveSet, ContactSolver, QpSolver, SolverOptions};
 
 /// More vertices than this are refused before they are made: see the limit of the generators.
 const MAX_VERTICES: f64 = 5e7;
@@ -80,6 +80,7 @@ fn cannot_read(case: &str, mesh: &Path, error: &ReadError) -> Failure {
 pub(super) fn solver(name: BackendName) -> Box<dyn ContactSolver> {
     match name {
         BackendName::Clarabel => Box::new(QpSolver::new(Clarabel)),
+        BackendName::ActiveSet => Box::new(ActiveSet),
         #[cfg(feature = "osqp")]
         BackendName::Osqp => Box::new(QpSolver::new(crate::qp::Osqp)),
         #[cfg(not(feature = "osqp"))]

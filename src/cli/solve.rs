@@ -150,7 +150,7 @@ fn table(summary: &Summary, polish: Option<PolishReport>, folder: &Path) -> Stri
 
 fn polish_line(polish: Option<PolishReport>) -> String {
     match polish {
-        None => "off".into(),
+        None => "none".into(),
         Some(PolishReport { kept, repairs, residual_before, residual_after, .. }) => {
             let verdict = if kept { "kept" } else { "not kept" };
             let repairs =

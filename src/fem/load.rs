@@ -82,3 +82,6 @@ fn element_loads(
         .map(|(t, values)| [0, 1, 2].map(|corner| integral(t, values, corner)))
         .collect())
 }
+
+#[cfg(test)]
+mod tests;

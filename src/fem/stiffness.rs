@@ -77,3 +77,6 @@ fn assemble_rows(mesh: &Mesh, around: &VertexTriangles, vertices: std::ops::Rang
     }
     rows
 }
+
+#[cfg(test)]
+mod tests;

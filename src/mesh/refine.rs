@@ -1,6 +1,6 @@
 //! Uniform refinement: each triangle into four, by the midpoints of its edges.
 
-use super::adjacency::HalfEdges;
+use super::midpoints::Midpoints;
 use super::{Mesh, VertexKind};
 
 /// A refined mesh and where its vertices come from.
@@ -18,32 +18,19 @@ impl Mesh {
     ///
     /// Curved boundaries are not followed: the domain stays the polygon that the coarse mesh covers.
     pub fn refine(&self) -> Refinement {
-        let coarse = self.points.len();
-        let mut points = self.points.clone();
-        let mut kind = self.kind.clone();
-        let mut parents = Vec::new();
-        // midpoints[t][i]: the midpoint of the edge from corner i to corner i + 1 of triangle t
-        let mut midpoints = vec![[0; 3]; self.triangles.len()];
-        for (lower, upper, sides) in HalfEdges::new(coarse, &self.triangles).edges() {
-            let [p, q] = [self.points[lower], self.points[upper]];
-            let midpoint = points.len();
-            points.push([0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])]);
-            kind.push(if sides.len() == 1 { VertexKind::Boundary } else { VertexKind::Interior });
-            parents.push([lower, upper]);
-            for side in sides {
-                let from = if side.reversed { upper } else { lower };
-                let corner = self.triangles[side.triangle].iter().position(|&a| a == from);
-                midpoints[side.triangle][corner.expect("a half edge starts at a corner of its triangle")] =
-                    midpoint;
-            }
-        }
+        let midpoints = Midpoints::new(self);
+        let points = [self.points.as_slice(), &midpoints.points].concat();
+        let kind_of_midpoint =
+            |&boundary: &bool| if boundary { VertexKind::Boundary } else { VertexKind::Interior };
+        let kind =
+            self.kind.iter().copied().chain(midpoints.on_boundary.iter().map(kind_of_midpoint)).collect();
         let triangles = self
             .triangles
             .iter()
-            .zip(&midpoints)
+            .zip(&midpoints.of_triangle)
             .flat_map(|(&[a, b, c], &[ab, bc, ca])| [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]])
             .collect();
-        Refinement { mesh: Mesh { points, triangles, kind }, parents }
+        Refinement { mesh: Mesh { points, triangles, kind }, parents: midpoints.ends }
     }
 }
 
@@ -52,6 +39,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::mesh::adjacency::HalfEdges;
     use crate::mesh::samples::{irregular, renumbered, square, square_without};
 
     /// Rounding of sums over the triangles of small meshes of size one.

@@ -33,6 +33,8 @@ pub struct Summary {
     pub h: f64,
     /// The smallest angle, degrees.
     pub min_angle: f64,
+    /// The largest ratio of the longest edge of a triangle to the diameter of its inscribed circle.
+    pub shape_regularity: f64,
     /// Iterations of the solver.
     pub iterations: usize,
     /// What the polish did; absent when it was not asked for or not possible.
@@ -120,6 +122,7 @@ impl Summary {
             unknowns: 2 * d.interior().len(),
             h: quality.h_max,
             min_angle: quality.min_angle,
+            shape_regularity: quality.shape_regularity,
             iterations: statistics.iterations,
             polish: polish(statistics),
             energy: solution.map(ContactSolution::energy),

@@ -56,3 +56,6 @@ fn gap_matrix(n: usize) -> CsMat<f64> {
     }
     triplets.to_csc()
 }
+
+#[cfg(test)]
+mod tests;

@@ -176,3 +176,6 @@ pub fn write_qps(qp: &QpProblem, mut out: impl Write) -> io::Result<()> {
     writeln!(out, "ENDATA")?;
     out.flush()
 }
+
+#[cfg(test)]
+mod tests;

@@ -3,11 +3,9 @@
 use std::time::Instant;
 
 use super::polish::polish;
-use super::{Candidate, ContactSolver, PolishReport, SolverError, SolverOptions, Statistics};
+use super::{Candidate, ContactSolver, SolverError, SolverOptions, Statistics};
 use crate::discretization::Discretization;
-use crate::qp::{
-    BackendError, KktResiduals, QpBackend, QpOptions, QpProblem, QpSolution, Status, contact_qp,
-};
+use crate::qp::{BackendError, QpBackend, QpOptions, QpProblem, QpSolution, Status, contact_qp};
 
 /// Poses (3.4) as a [`QpProblem`], has it solved by a backend, and polishes the answer.
 pub struct QpSolver {
@@ -46,7 +44,7 @@ impl ContactSolver for QpSolver {
             },
         };
         if options.polish {
-            candidate.statistics.polish = polish_if_better(d, &qp, &mut candidate);
+            candidate.statistics.polish = polish(d, &qp, &mut candidate);
         }
         candidate.statistics.solve_seconds =
             start.elapsed().as_secs_f64() - candidate.statistics.setup_seconds;
@@ -66,7 +64,7 @@ fn qp_options(d: &Discretization, options: &SolverOptions) -> QpOptions {
 }
 
 /// `x = (u1, u2)` at the interior vertices.
-fn unknowns(d: &Discretization, displacement: &[Vec<f64>; 2]) -> Vec<f64> {
+pub(super) fn unknowns(d: &Discretization, displacement: &[Vec<f64>; 2]) -> Vec<f64> {
     displacement.iter().flat_map(|u| d.interior().iter().map(|&a| u[a])).collect()
 }
 
@@ -104,26 +102,4 @@ fn without_unknowns() -> QpSolution {
         setup_seconds: 0.0,
         solve_seconds: 0.0,
     }
-}
-
-/// Polishes the candidate and keeps the result if its residuals are smaller. `None` when there is none.
-fn polish_if_better(d: &Discretization, qp: &QpProblem, candidate: &mut Candidate) -> Option<PolishReport> {
-    let residual = |displacement: &[Vec<f64>; 2], multiplier: &[f64]| {
-        KktResiduals::new(qp, &unknowns(d, displacement), multiplier).worst()
-    };
-    let polished = polish(d, candidate)?;
-    let residual_before = residual(&candidate.displacement, &candidate.multiplier);
-    let residual_after = residual(&polished.displacement, &polished.multiplier);
-    let kept = residual_after < residual_before;
-    if kept {
-        candidate.displacement = polished.displacement;
-        candidate.multiplier = polished.multiplier;
-    }
-    Some(PolishReport {
-        kept,
-        repairs: polished.repairs,
-        settled: polished.settled,
-        residual_before,
-        residual_after,
-    })
 }

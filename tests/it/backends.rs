@@ -1,10 +1,11 @@
 //! The contract of a QP backend, held against every one of the build.
 
+use membrane_contact::action::certify;
 use membrane_contact::discretization::Discretization;
 use membrane_contact::mesh::{Pattern, rectangle};
 use membrane_contact::problem::Case;
 use membrane_contact::qp::{Clarabel, KktResiduals, QpBackend, QpOptions, QpProblem, Status, contact_qp};
-use membrane_contact::solver::{ContactSolver, SolverOptions};
+use membrane_contact::solver::{ActiveSet, ContactSolver, SolverOptions};
 use membrane_contact::sprs::{CsMat, TriMat};
 
 use crate::common::{TOLERANCE, distance, exact, solve, solvers};
@@ -153,7 +154,7 @@ fn results_and_iterations_are_the_same_in_every_run() {
     let problem = exact(Case::Circle, &[]).problem().unwrap();
     let d = Discretization::new(&problem, &mesh).unwrap();
     for mut solver in solvers() {
-        let [first, second] = [(); 2].map(|()| solve(&mut solver, &d, true));
+        let [first, second] = [(); 2].map(|()| solve(solver.as_mut(), &d, true));
         assert_eq!(first.displacement, second.displacement);
         assert_eq!(first.multiplier, second.multiplier);
         assert_eq!(first.statistics.iterations, second.statistics.iterations);
@@ -176,6 +177,33 @@ fn osqp_needs_fewer_iterations_from_a_warm_start() {
         QpSolver::new(Osqp).solve(&d, &options).expect("it runs").statistics.iterations
     });
     assert!(warm < cold, "{warm} iterations from a warm start, {cold} without");
+}
+
+#[test]
+fn the_active_set_needs_one_solve_from_its_own_answer_and_few_from_a_nearby_one() {
+    let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [24, 24], Pattern::Right).unwrap();
+    let steps = |parameters: &[(&str, f64)], warm_start| {
+        let problem = exact(Case::Circle, parameters).problem().unwrap();
+        let d = Discretization::new(&problem, &mesh).unwrap();
+        let options = SolverOptions { warm_start, ..SolverOptions::default() };
+        ActiveSet.solve(&d, &options).expect("it runs")
+    };
+    let cold = steps(&[], None);
+    assert_eq!(steps(&[], Some(cold.clone())).statistics.iterations, 1);
+    let from_cold = steps(&[("R", 0.32)], None).statistics.iterations;
+    let from_nearby = steps(&[("R", 0.32)], Some(cold)).statistics.iterations;
+    assert!(from_nearby < from_cold, "{from_nearby} steps from a nearby solution, {from_cold} without");
+}
+
+#[test]
+fn the_active_set_stopped_early_is_rejected() {
+    let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [24, 24], Pattern::Right).unwrap();
+    let problem = exact(Case::Circle, &[]).problem().unwrap();
+    let d = Discretization::new(&problem, &mesh).unwrap();
+    let options = SolverOptions { max_iterations: Some(2), ..SolverOptions::default() };
+    let stopped = ActiveSet.solve(&d, &options).expect("it runs");
+    assert_eq!((stopped.statistics.status, stopped.statistics.iterations), (Status::IterationLimit, 2));
+    assert!(certify(&d, stopped, TOLERANCE).is_err());
 }
 
 #[test]

@@ -167,7 +167,11 @@ const BAD_SOLVER: &[Fault] = &[
     ("1e-8", "1", &["`solver.tolerance` = 1", "between 0 and 1"]),
     ("1e-8", "nan", &["`solver.tolerance` = NaN", "between 0 and 1"]),
     ("1e-8", "\"small\"", &["`solver.tolerance` must be a number"]),
-    ("\"clarabel\"", "\"claarbel\"", &["`solver.backend`", "`claarbel`", "one of clarabel, osqp"]),
+    (
+        "\"clarabel\"",
+        "\"claarbel\"",
+        &["`solver.backend`", "`claarbel`", "one of clarabel, osqp, active-set"],
+    ),
     ("\"clarabel\"", "3", &["`solver.backend` must be a text"]),
     #[cfg(not(feature = "osqp"))]
     ("\"clarabel\"", "\"osqp\"", &["`solver.backend`", "not in this build", "--features osqp"]),
@@ -287,7 +291,11 @@ const BAD_ARGUMENTS: &[(&str, &[&str], &str)] = &[
     ("solve case.toml --tolerance 1", &["'1'", "between 0 and 1"], "solve case.toml --tolerance 1e-6"),
     ("solve case.toml --tolerance -1", &["'-1'", "between 0 and 1"], "solve case.toml --tolerance 1e-6"),
     ("solve case.toml --tolerance nan", &["'nan'", "between 0 and 1"], "solve case.toml --tolerance 1e-6"),
-    ("solve case.toml --backend calrabel", &["one of clarabel, osqp"], "solve case.toml --backend clarabel"),
+    (
+        "solve case.toml --backend calrabel",
+        &["one of clarabel, osqp, active-set"],
+        "solve case.toml --backend clarabel",
+    ),
     #[cfg(not(feature = "osqp"))]
     ("solve case.toml --backend osqp", &["--features osqp"], "solve case.toml --backend clarabel"),
     ("solve case.toml --out file", &["file", "another folder with --out"], "solve case.toml --out new"),

@@ -7,22 +7,23 @@ use membrane_contact::problem::{Case, ExactSolution};
 use membrane_contact::qp::Clarabel;
 #[cfg(feature = "osqp")]
 use membrane_contact::qp::Osqp;
-use membrane_contact::solver::{Candidate, ContactSolver, QpSolver, SolverOptions};
+use membrane_contact::solver::{ActiveSet, Candidate, ContactSolver, QpSolver, SolverOptions};
 
 /// What is asked of backends and of the certificate: the program's default.
 pub const TOLERANCE: f64 = 1e-8;
 
-/// A solver for each backend of this build.
-pub fn solvers() -> Vec<QpSolver> {
+/// Every solver of this build; the first is the default.
+pub fn solvers() -> Vec<Box<dyn ContactSolver>> {
     vec![
-        QpSolver::new(Clarabel),
+        Box::new(QpSolver::new(Clarabel)),
         #[cfg(feature = "osqp")]
-        QpSolver::new(Osqp),
+        Box::new(QpSolver::new(Osqp)),
+        Box::new(ActiveSet),
     ]
 }
 
 /// Solves at [`TOLERANCE`].
-pub fn solve(solver: &mut QpSolver, d: &Discretization, polish: bool) -> Candidate {
+pub fn solve(solver: &mut dyn ContactSolver, d: &Discretization, polish: bool) -> Candidate {
     let options = SolverOptions { tolerance: TOLERANCE, polish, ..SolverOptions::default() };
     solver.solve(d, &options).expect("the backend runs")
 }

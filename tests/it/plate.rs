@@ -33,7 +33,7 @@ fn backends_agree_on_displacements_action_and_contact() {
     let range = |u: &[f64]| u.iter().copied().fold(0.0, f64::max) - u.iter().copied().fold(0.0, f64::min);
     let solutions: Vec<_> = solvers()
         .into_iter()
-        .flat_map(|mut solver| [true, false].map(|polish| (polish, solve(&mut solver, &d, polish))))
+        .flat_map(|mut solver| [true, false].map(|polish| (polish, solve(solver.as_mut(), &d, polish))))
         .map(|(polish, candidate)| (polish, certify(&d, candidate, TOLERANCE).expect("certified")))
         .collect();
     let (_, reference) = &solutions[0];
