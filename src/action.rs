@@ -1,6 +1,7 @@
 //! The action `lambda_h` of section 4.1, and the certificate that ties it to the displacements.
 
 mod certificate;
+mod pairing;
 mod recovery;
 mod residuals;
 mod solution;
@@ -8,6 +9,7 @@ mod solution;
 mod tests;
 
 pub use certificate::{Reason, Rejected, certify};
+pub use pairing::{equilibrium, is_in_cone, pairing, project, variation};
 pub use recovery::Action;
 pub use residuals::{Residual, Residuals};
 pub use solution::ContactSolution;
