@@ -3,8 +3,10 @@
 mod adjacency;
 mod check;
 mod dual;
+mod family;
 mod generate;
 pub mod gmsh;
+mod grade;
 mod midpoints;
 mod polygon;
 mod quality;
@@ -16,6 +18,7 @@ mod structured;
 
 pub use check::MeshError;
 pub use dual::{DualMesh, SubTriangulation};
+pub use family::MeshFamily;
 pub use generate::{GenerateError, MeshSize, generate};
 pub use polygon::polygon;
 pub use quality::MeshQuality;

@@ -41,7 +41,14 @@ pub enum MeshSource {
     /// A Gmsh file.
     File(PathBuf),
     /// A generator.
-    Generator(Domain, MeshSize),
+    Generator {
+        /// The domain.
+        domain: Domain,
+        /// How fine.
+        size: MeshSize,
+        /// A point towards which the mesh is graded, and the exponent: see [`Mesh::graded`](crate::mesh::Mesh::graded).
+        grading: Option<([f64; 2], f64)>,
+    },
 }
 
 /// The table `[solver]`.
@@ -265,8 +272,17 @@ fn mesh(
 }
 
 fn generator(section: &mut Section, domain: Domain) -> Result<MeshSource, Failure> {
+    let grading = section.number("grading")?.map(|exponent| match domain {
+        Domain::Rectangle { lower, upper } => {
+            Ok(([0, 1].map(|axis| 0.5 * (lower[axis] + upper[axis])), exponent))
+        }
+        Domain::LShape { .. } => Ok(([0.0, 0.0], exponent)),
+        _ => Err(section
+            .error("grading", "is for a square (to its centre) or an L-shape (to its corner): remove it")),
+    });
+    let grading = grading.transpose()?;
     let size = mesh_size(section, &domain)?;
-    Ok(MeshSource::Generator(domain, size))
+    Ok(MeshSource::Generator { domain, size, grading })
 }
 
 fn domain(section: &mut Section, shape: &str) -> Result<Domain, Failure> {

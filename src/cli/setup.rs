@@ -9,7 +9,7 @@ use super::progress::Progress;
 use super::terminal::grouped;
 use super::{Failure, SolverSettings};
 use crate::discretization::Discretization;
-use crate::mesh::{Mesh, ReadError, generate};
+use crate::mesh::{Mesh, MeshFamily, ReadError, generate};
 use crate::output::{Seconds, WriteSeek, write_atomically};
 use crate::qp::Clarabel;
 use crate::solver::{ActiveSet, ContactSolver, QpSolver, SolverOptions};
@@ -17,11 +17,11 @@ use crate::solver::{ActiveSet, ContactSolver, QpSolver, SolverOptions};
 /// More vertices than this are refused before they are made: see the limit of the generators.
 const MAX_VERTICES: f64 = 5e7;
 
-/// The case and its mesh.
+/// The case and its meshes.
 pub(super) struct Setup {
     pub(super) name: String,
     pub(super) case: CaseFile,
-    pub(super) mesh: Mesh,
+    pub(super) family: MeshFamily,
     pub(super) seconds: Seconds,
 }
 
@@ -32,38 +32,50 @@ impl Setup {
         let case = CaseFile::read(&arguments.path)?;
         progress.stage("making the mesh");
         let start = Instant::now();
-        let mesh = make_mesh(&name, &case, arguments.refine as usize)?;
+        let family = make_mesh(&name, &case, arguments.refine as usize)?;
         let seconds = Seconds { mesh: start.elapsed().as_secs_f64(), ..Seconds::default() };
-        Ok(Self { name, case, mesh, seconds })
+        Ok(Self { name, case, family, seconds })
     }
 
     /// Assembles the discrete problem, and says how long it took.
     pub(super) fn discretize(&self, progress: &Progress) -> Result<(Discretization<'_>, Seconds), Failure> {
-        progress.stage(format!("assembling on {} vertices", grouped(self.mesh.points().len())));
+        progress.stage(format!("assembling on {} vertices", grouped(self.family.mesh().points().len())));
         let start = Instant::now();
-        let d = Discretization::new(&self.case.problem, &self.mesh)
+        let d = Discretization::new(&self.case.problem, self.family.mesh())
             .map_err(|error| Failure::Input(format!("{}: {error}", self.name)))?;
         Ok((d, Seconds { assembly: start.elapsed().as_secs_f64(), ..self.seconds }))
     }
 }
 
-fn make_mesh(name: &str, case: &CaseFile, further: usize) -> Result<Mesh, Failure> {
-    let mut mesh = match &case.mesh {
-        MeshSource::File(path) => Mesh::read_gmsh(path).map_err(|error| cannot_read(name, path, &error))?,
-        MeshSource::Generator(domain, size) => generate(domain, *size)
-            .map_err(|error| Failure::Input(format!("{name}: [mesh], [domain]: {error}")))?,
+/// The coarse mesh of the case and its refinements.
+fn make_mesh(name: &str, case: &CaseFile, further: usize) -> Result<MeshFamily, Failure> {
+    let bad_mesh =
+        |error: &dyn std::fmt::Display| Failure::Input(format!("{name}: [mesh], [domain]: {error}"));
+    let mut family = match &case.mesh {
+        MeshSource::File(path) => {
+            MeshFamily::polygonal(Mesh::read_gmsh(path).map_err(|error| cannot_read(name, path, &error))?)
+        }
+        MeshSource::Generator { domain, size, grading } => {
+            let mesh = generate(domain, *size).map_err(|error| bad_mesh(&error))?;
+            match *grading {
+                Some((point, exponent)) => {
+                    MeshFamily::graded(mesh, point, exponent).map_err(|error| bad_mesh(&error))?
+                }
+                None => MeshFamily::of_domain(mesh, domain),
+            }
+        }
     };
     let refinements = case.refine.saturating_add(further);
     // Each refinement makes four times as many.
-    if !(mesh.points().len() as f64 * 4f64.powf(refinements as f64) <= MAX_VERTICES) {
+    if !(family.mesh().points().len() as f64 * 4f64.powf(refinements as f64) <= MAX_VERTICES) {
         return Err(Failure::Input(format!(
             "{name}: {refinements} refinements lead beyond {MAX_VERTICES:.0e} vertices: refine less"
         )));
     }
     for _ in 0..refinements {
-        mesh = mesh.refine().mesh;
+        family.refine().map_err(|error| bad_mesh(&error))?;
     }
-    Ok(mesh)
+    Ok(family)
 }
 
 fn cannot_read(case: &str, mesh: &Path, error: &ReadError) -> Failure {

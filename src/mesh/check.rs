@@ -131,6 +131,14 @@ pub enum MeshError {
         /// A triangle at the second.
         triangle: usize,
     },
+    /// A mesh cannot be graded like this.
+    #[error(
+        "the mesh cannot be graded with the exponent {exponent}: give a number >= 1, and a domain that is a square around the point or has it as its corner"
+    )]
+    NotGraded {
+        /// The exponent.
+        exponent: f64,
+    },
 }
 
 impl MeshError {
@@ -146,7 +154,7 @@ impl MeshError {
                 Some(first)
             }
             Self::Nested { inner, .. } => Some(inner),
-            Self::Empty | Self::Coordinates { .. } => None,
+            Self::Empty | Self::Coordinates { .. } | Self::NotGraded { .. } => None,
         }
     }
 }

@@ -1,0 +1,122 @@
+//! A coarse mesh and the finer ones that follow its domain.
+
+use super::{Mesh, MeshError, Refinement, VertexKind};
+use crate::problem::Domain;
+
+/// A mesh that can be refined again and again, the finer ones following a curved boundary or a grading.
+#[derive(Debug, Clone)]
+pub struct MeshFamily {
+    mesh: Mesh,
+    shape: Shape,
+}
+
+/// What refinements follow.
+#[derive(Debug, Clone)]
+enum Shape {
+    /// The polygon that the coarse mesh covers.
+    Polygon,
+    /// A circle.
+    Disk { centre: [f64; 2], radius: f64 },
+    /// A grading towards a point, laid over a mesh that is refined uniformly: see [`Mesh::graded`].
+    Graded { uniform: Mesh, point: [f64; 2], exponent: f64 },
+}
+
+impl MeshFamily {
+    /// Refinements that keep the polygon that `mesh` covers.
+    pub fn polygonal(mesh: Mesh) -> Self {
+        Self { mesh, shape: Shape::Polygon }
+    }
+
+    /// Refinements of a mesh of `domain`: those of a disk follow its circle.
+    pub fn of_domain(mesh: Mesh, domain: &Domain) -> Self {
+        match *domain {
+            Domain::Disk { centre, radius } => Self { mesh, shape: Shape::Disk { centre, radius } },
+            _ => Self::polygonal(mesh),
+        }
+    }
+
+    /// Refinements graded towards `point`, as the coarse mesh: see [`Mesh::graded`].
+    ///
+    /// # Errors
+    /// As [`Mesh::graded`].
+    pub fn graded(uniform: Mesh, point: [f64; 2], exponent: f64) -> Result<Self, MeshError> {
+        let mesh = uniform.graded(point, exponent)?;
+        Ok(Self { mesh, shape: Shape::Graded { uniform, point, exponent } })
+    }
+
+    /// The current mesh.
+    pub fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    /// Divides every triangle into four; returns the parents of the new vertices, see [`Refinement`].
+    ///
+    /// # Errors
+    /// [`MeshError`] when triangles become too small to be represented.
+    pub fn refine(&mut self) -> Result<Vec<[usize; 2]>, MeshError> {
+        let (parents, mesh) = match &mut self.shape {
+            Shape::Polygon => {
+                let Refinement { mesh, parents } = self.mesh.refine();
+                (parents, mesh)
+            }
+            Shape::Disk { centre, radius } => {
+                let Refinement { mesh, parents } = self.mesh.refine();
+                (parents, boundary_moved_to_circle(&mesh, *centre, *radius)?)
+            }
+            Shape::Graded { uniform, point, exponent } => {
+                let Refinement { mesh, parents } = uniform.refine();
+                let graded = mesh.graded(*point, *exponent)?;
+                *uniform = mesh;
+                (parents, graded)
+            }
+        };
+        self.mesh = mesh;
+        Ok(parents)
+    }
+}
+
+fn boundary_moved_to_circle(mesh: &Mesh, centre: [f64; 2], radius: f64) -> Result<Mesh, MeshError> {
+    let moved = |(point, kind): (&[f64; 2], &VertexKind)| {
+        let [x, y] = [point[0] - centre[0], point[1] - centre[1]];
+        let scale = if *kind == VertexKind::Boundary { radius / x.hypot(y) } else { 1.0 };
+        [centre[0] + scale * x, centre[1] + scale * y]
+    };
+    Mesh::new(mesh.points.iter().zip(&mesh.kind).map(moved).collect(), mesh.triangles.clone())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use super::*;
+    use crate::mesh::{Pattern, disk, l_shape};
+
+    #[test]
+    fn a_disk_stays_round_and_a_polygon_does_not() {
+        let domain = Domain::Disk { centre: [1.0, 2.0], radius: 0.5 };
+        let coarse = disk([1.0, 2.0], 0.5, 2).unwrap();
+        let mut round = MeshFamily::of_domain(coarse.clone(), &domain);
+        let mut straight = MeshFamily::polygonal(coarse.clone());
+        let mut defects = vec![0.25 * PI - coarse.area()];
+        for _ in 0..3 {
+            round.refine().unwrap();
+            straight.refine().unwrap();
+            defects.push(0.25 * PI - round.mesh().area());
+        }
+        for pair in defects.windows(2) {
+            assert!((pair[0] / pair[1] - 4.0).abs() < 0.2, "second order: {defects:?}");
+        }
+        assert!((straight.mesh().area() - coarse.area()).abs() < 1e-12);
+        assert!(round.mesh().quality().min_angle > 30.0);
+    }
+
+    #[test]
+    fn refinements_of_a_graded_mesh_are_graded() {
+        let corner = l_shape(1.0, 4, Pattern::Right).unwrap();
+        let mut family = MeshFamily::graded(corner.clone(), [0.0, 0.0], 2.0).unwrap();
+        let coarse = family.mesh().quality().h_min;
+        let parents = family.refine().unwrap();
+        assert!((coarse / family.mesh().quality().h_min - 4.0).abs() < 1e-9, "h_min ~ h^2");
+        assert_eq!(family.mesh().points().len(), corner.points().len() + parents.len());
+    }
+}
