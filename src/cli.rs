@@ -6,6 +6,7 @@ mod args;
 mod case_file;
 mod cases;
 mod check;
+mod converge;
 mod export;
 mod progress;
 mod section;
@@ -62,6 +63,7 @@ fn run(command: &Command) -> Result<(), Failure> {
     match command {
         Command::Solve(arguments) => solve::run(arguments),
         Command::Check(arguments) => check::run(arguments),
+        Command::Converge(arguments) => converge::run(arguments),
         Command::Export(arguments) => export::run(arguments),
         Command::Cases(arguments) => cases::run(arguments),
     }

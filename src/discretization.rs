@@ -128,12 +128,20 @@ impl<'m> Discretization<'m> {
         self.interior.iter().map(row).collect()
     }
 
-    /// The size of the terms that cancel in [`imbalance`](Self::imbalance): `mu_i |K| |u_i| + |F_i|` at the unknowns.
-    /// Times the machine precision, it bounds what rounding leaves of it.
-    pub fn imbalance_terms(&self, i: usize, u: &[f64]) -> Vec<f64> {
+    /// The size of the terms that cancel in [`imbalance`](Self::imbalance) of membrane `i` at the unknowns:
+    /// `mu_i |K| |u_i| + m |K| |u1 - u2| + |F_i|` with `m = mu1 mu2 / (mu1 + mu2)`. Times the machine precision, it bounds
+    /// what rounding leaves of it. The second term is there because one membrane follows from the other and the gap:
+    /// where it is nearly flat, the gap's rounding stays in it.
+    pub fn imbalance_terms(&self, i: usize, displacement: &[Vec<f64>; 2]) -> Vec<f64> {
+        let [u1, u2] = displacement;
+        let [mu1, mu2] = self.tension;
+        let gap_tension = mu1 * (mu2 / (mu1 + mu2));
+        let size = |b: usize| {
+            self.tension[i] * displacement[i][b].abs() + gap_tension * (u1[b] - u2[b]).abs()
+        };
         let terms = |a: usize| {
             let row = self.stiffness.outer_view(a).expect("a vertex has a row");
-            self.tension[i] * row.iter().map(|(b, k)| (k * u[b]).abs()).sum::<f64>() + self.load[i][a].abs()
+            row.iter().map(|(b, k)| k.abs() * size(b)).sum::<f64>() + self.load[i][a].abs()
         };
         self.interior.iter().map(|&a| terms(a)).collect()
     }

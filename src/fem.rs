@@ -1,14 +1,18 @@
 //! P1 finite elements (3.1): quadrature, stiffness matrix, load vectors.
 
+mod cut;
 mod element;
 mod load;
+mod means;
 mod quadrature;
 mod stiffness;
 
-pub use load::{NotFinite, load};
+pub use load::{NotFinite, element_loads, load};
+pub use means::element_means;
 pub use quadrature::{DEGREE_4, TriangleRule};
 pub use stiffness::stiffness;
 
+pub(crate) use cut::CutRule;
 pub(crate) use element::local_stiffness;
 pub(crate) use load::load_around;
 pub(crate) use stiffness::stiffness_around;

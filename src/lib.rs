@@ -16,6 +16,9 @@ pub mod discretization;
 pub mod qp;
 pub mod solver;
 pub mod action;
+pub mod flux;
+pub mod error;
+pub mod study;
 pub mod output;
 #[cfg(feature = "cli")]
 pub mod cli;

@@ -1,7 +1,7 @@
 //! Solvers of the reduced discrete problem (3.4).
 
 mod active_set;
-mod cholesky;
+pub(crate) mod cholesky;
 mod decoupled;
 mod polish;
 mod qp_solver;
@@ -38,8 +38,8 @@ pub struct SolverOptions {
     pub time_limit: Option<f64>,
     /// Whether to make the result exact by solving for its contact set.
     pub polish: bool,
-    /// A result of a nearby problem on the same mesh to start from, for solvers that can.
-    pub warm_start: Option<Candidate>,
+    /// A guess on this mesh to start from, for solvers that can.
+    pub warm_start: Option<StartingPoint>,
 }
 
 impl Default for SolverOptions {
@@ -69,6 +69,29 @@ pub struct Candidate {
     pub multiplier: Vec<f64>,
     /// How it was found.
     pub statistics: Statistics,
+}
+
+/// A guess of displacements and multipliers: of a nearby problem, or of a coarser mesh, prolonged.
+#[derive(Debug, Clone)]
+pub struct StartingPoint {
+    /// `[u1, u2]` over vertices.
+    pub displacement: [Vec<f64>; 2],
+    /// `y_a = lambda_a |D_a|` over unknowns.
+    pub multiplier: Vec<f64>,
+}
+
+impl From<Candidate> for StartingPoint {
+    fn from(candidate: Candidate) -> Self {
+        Self { displacement: candidate.displacement, multiplier: candidate.multiplier }
+    }
+}
+
+impl StartingPoint {
+    /// Whether it has the lengths of this discretization.
+    pub(crate) fn fits(&self, d: &Discretization) -> bool {
+        self.displacement.iter().all(|u| u.len() == d.mesh().points().len())
+            && self.multiplier.len() == d.interior().len()
+    }
 }
 
 /// How a candidate was found.

@@ -27,7 +27,7 @@ impl Action {
         let [u1, u2] = displacement;
         let from_membrane = [per_area(d.imbalance(0, u1), 1.0), per_area(d.imbalance(1, u2), -1.0)];
         let ulps = ROUNDINGS * f64::EPSILON;
-        let rounding = [per_area(d.imbalance_terms(0, u1), ulps), per_area(d.imbalance_terms(1, u2), ulps)];
+        let rounding = [0, 1].map(|i| per_area(d.imbalance_terms(i, displacement), ulps));
         let lambda =
             from_membrane[0].iter().zip(&from_membrane[1]).map(|(&l1, &l2)| weighted(d, l1, l2)).collect();
         Self { from_membrane, rounding, lambda }

@@ -34,6 +34,8 @@ pub(super) enum Command {
     Solve(SolveArguments),
     /// Show every residual, from every backend, with and without polish
     Check(CheckArguments),
+    /// Measure errors and rates on finer and finer meshes, for a built-in case
+    Converge(ConvergeArguments),
     /// Write the quadratic program of a case for other solvers
     Export(ExportArguments),
     /// List the built-in exact cases, or print one as a case file
@@ -62,6 +64,21 @@ pub(super) struct SolveArguments {
 pub(super) struct CheckArguments {
     #[command(flatten)]
     pub(super) case: CaseArguments,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct ConvergeArguments {
+    #[command(flatten)]
+    pub(super) case: CaseArguments,
+    /// Number of meshes, each with four times the triangles of the one before
+    #[arg(long, value_name = "N", default_value_t = 5)]
+    pub(super) levels: usize,
+    /// Solver, not the case file's: clarabel, osqp, active-set
+    #[arg(long, value_name = "NAME")]
+    pub(super) backend: Option<BackendName>,
+    /// Folder for the results; levels that are there are kept [default: out/CASE]
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -125,10 +125,13 @@ impl CaseFile {
     /// # Errors
     /// One line that names the file, the key and the remedy.
     pub fn read(path: &Path) -> Result<Self, Failure> {
-        let name = path.display().to_string();
-        let text = std::fs::read_to_string(path)
-            .map_err(|error| Failure::Input(format!("{name}: {}", unreadable(&error))))?;
-        Self::parse(&name, &text, path)
+        Self::parse(&path.display().to_string(), &Self::read_text(path)?, path)
+    }
+
+    /// Reads the text of a case file.
+    pub(super) fn read_text(path: &Path) -> Result<String, Failure> {
+        std::fs::read_to_string(path)
+            .map_err(|error| Failure::Input(format!("{}: {}", path.display(), unreadable(&error))))
     }
 
     /// Reads the text of a case file that lies at `path`; `name` stands in messages.

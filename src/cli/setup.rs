@@ -20,6 +20,8 @@ const MAX_VERTICES: f64 = 5e7;
 /// The case and its meshes.
 pub(super) struct Setup {
     pub(super) name: String,
+    /// The text of the case file.
+    pub(super) text: String,
     pub(super) case: CaseFile,
     pub(super) family: MeshFamily,
     pub(super) seconds: Seconds,
@@ -29,12 +31,13 @@ impl Setup {
     /// Reads the case file and makes its mesh.
     pub(super) fn new(arguments: &CaseArguments, progress: &Progress) -> Result<Self, Failure> {
         let name = arguments.path.display().to_string();
-        let case = CaseFile::read(&arguments.path)?;
+        let text = CaseFile::read_text(&arguments.path)?;
+        let case = CaseFile::parse(&name, &text, &arguments.path)?;
         progress.stage("making the mesh");
         let start = Instant::now();
         let family = make_mesh(&name, &case, arguments.refine as usize)?;
         let seconds = Seconds { mesh: start.elapsed().as_secs_f64(), ..Seconds::default() };
-        Ok(Self { name, case, family, seconds })
+        Ok(Self { name, text, case, family, seconds })
     }
 
     /// Assembles the discrete problem, and says how long it took.

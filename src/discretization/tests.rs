@@ -90,8 +90,9 @@ fn imbalance_of_an_exact_solution_is_rounding() {
     let mesh = square(8);
     let d = Discretization::new(&problem(-4.0, -1.0, 0.0), &mesh).unwrap();
     let u: Vec<f64> = mesh.points().iter().map(|&[x, _]| x * x).collect();
+    let both = [u.clone(), u.clone()];
     for membrane in 0..2 {
-        let (imbalance, terms) = (d.imbalance(membrane, &u), d.imbalance_terms(membrane, &u));
+        let (imbalance, terms) = (d.imbalance(membrane, &u), d.imbalance_terms(membrane, &both));
         for (k, (imbalance, terms)) in imbalance.iter().zip(&terms).enumerate() {
             assert!(imbalance.abs() <= 8.0 * f64::EPSILON * terms, "unknown {k}: {imbalance}, of {terms}");
         }
@@ -107,8 +108,12 @@ fn imbalance_terms_are_sums_of_sizes() {
     let mesh = square(2);
     let d = Discretization::new(&problem(-4.0, 1.0, 0.0), &mesh).unwrap();
     // At the centre K has 4 and four times -1: 2 (4 * 3 + 4 * 5) + 4 / 4.
-    let u = [-5.0, -5.0, -5.0, -5.0, 3.0, 5.0, 5.0, 5.0, 5.0];
-    assert!((d.imbalance_terms(0, &u)[0] - 65.0).abs() < ROUNDING);
+    let u = vec![-5.0, -5.0, -5.0, -5.0, 3.0, 5.0, 5.0, 5.0, 5.0];
+    let terms = |lower: Vec<f64>| d.imbalance_terms(0, &[u.clone(), lower])[0];
+    assert!((terms(u.clone()) - 65.0).abs() < ROUNDING);
+    // A gap as large as u adds m (4 * 3 + 4 * 5).
+    let [mu1, mu2] = d.tension();
+    assert!((terms(vec![0.0; 9]) - 65.0 - mu1 * mu2 / (mu1 + mu2) * 32.0).abs() < ROUNDING);
     assert!((d.imbalance(0, &u)[0] - (2.0 * 12.0 + 1.0)).abs() < ROUNDING);
 }
 
@@ -240,9 +245,9 @@ fn sizes_out_of_range_are_refused() {
     assert!(message(1.0, 1e300.into(), 0.0).unwrap_err().starts_with("the loads have the size 1"));
     assert!(message(1.0, 1e-300.into(), 1.0).unwrap_err().starts_with("the loads have the size"));
     assert!(message(1e-30, 1e30.into(), 0.0).unwrap_err().starts_with("the displacements have the size"));
-    // Loads that overflow to infinities of either sign leave NaN in their sums.
-    let large = rectangle([0.0, 0.0], [1e6, 1e6], [4, 4], Pattern::Right).unwrap();
-    let alternating = Function::from_fn(|x, y| if (x - y).abs() < 1e5 { 1.7e308 } else { -1.7e308 });
+    // Loads that overflow to infinities of either sign leave a NaN at every vertex.
+    let large = rectangle([-1e6, -1e6], [1e6, 1e6], [1, 1], Pattern::Crossed).unwrap();
+    let alternating = Function::from_fn(|x, y| if x.abs() > y.abs() { 1.7e308 } else { -1.7e308 });
     let problem = ContactProblem::builder().load(alternating, 0.0).build().unwrap();
     let error = Discretization::new(&problem, &large).map(|_| ()).unwrap_err();
     assert!(matches!(error, DiscretizationError::OutOfRange { value: f64::INFINITY, .. }), "{error}");

@@ -3,12 +3,17 @@
 use rayon::prelude::*;
 use thiserror::Error;
 
+use super::CutRule;
 use super::quadrature::{DEGREE_4, TriangleRule};
-use crate::mesh::{Mesh, VertexTriangles};
+use crate::mesh::{Mesh, VertexTriangles, twice_signed_area};
 use crate::problem::Function;
 
 /// Triangles whose quadrature points are evaluated together.
 const BLOCK: usize = 512;
+
+/// Subdivisions of a triangle that a jump of the load crosses: the jump is where it is, up to a sixteenth of the mesh size
+/// squared.
+const JUMP_DEPTH: usize = 4;
 
 /// A function has no finite value at a quadrature point.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
@@ -20,7 +25,8 @@ pub struct NotFinite {
     pub value: f64,
 }
 
-/// The load vector `F_a = int f phi_a`, by quadrature of degree 4 (for `f phi_a`: exact for `f` of degree 3).
+/// The load vector `F_a = int f phi_a`, by quadrature of degree 4 (for `f phi_a`: exact for `f` of degree 3). Triangles that
+/// one of [`Function::jumps`] crosses are cut along it.
 ///
 /// Shape: `vertices` (zero at unused ones). Unit: force. Linear time, in parallel; the result does not depend on the
 /// number of threads.
@@ -37,21 +43,31 @@ pub(crate) fn load_around(
     around: &VertexTriangles,
     f: &Function,
 ) -> Result<Vec<f64>, NotFinite> {
-    let blocks = mesh.triangles().len().div_ceil(BLOCK);
-    // Collected before errors are looked for, so that the first in the order of the triangles is named.
-    let blocks: Vec<_> =
-        (0..blocks).into_par_iter().map(|block| element_loads(mesh, block, f, &DEGREE_4)).collect();
-    let blocks = blocks.into_iter().collect::<Result<Vec<_>, _>>()?;
+    let integrals = element_loads(mesh, f)?;
     let on_element = |t: usize, a: usize| {
         let corner = mesh.triangles()[t].iter().position(|&b| b == a);
-        blocks[t / BLOCK][t % BLOCK][corner.expect("a is a corner of the triangles around it")]
+        integrals[t][corner.expect("a is a corner of the triangles around it")]
     };
     let at = |a: usize| around.of(a).iter().map(|&t| on_element(t, a)).sum();
     Ok((0..mesh.points().len()).into_par_iter().map(at).collect())
 }
 
-/// `int_T f phi_i` for the three corners of each triangle of a block.
-fn element_loads(
+/// `int_K f phi_i` for the three corners of each triangle `K`: what [`load`] adds up.
+///
+/// Shape: `triangles x 3`. Unit: force. Linear time, in parallel.
+///
+/// # Errors
+/// As [`load`].
+pub fn element_loads(mesh: &Mesh, f: &Function) -> Result<Vec<[f64; 3]>, NotFinite> {
+    let blocks = mesh.triangles().len().div_ceil(BLOCK);
+    // Collected before errors are looked for, so that the first in the order of the triangles is named.
+    let blocks: Vec<_> =
+        (0..blocks).into_par_iter().map(|block| block_loads(mesh, block, f, &DEGREE_4)).collect();
+    Ok(blocks.into_iter().collect::<Result<Vec<_>, _>>()?.concat())
+}
+
+/// [`element_loads`] for one block of triangles.
+fn block_loads(
     mesh: &Mesh,
     block: usize,
     f: &Function,
@@ -77,10 +93,31 @@ fn element_loads(
         let terms = values.iter().zip(rule.weights).zip(rule.points);
         mesh.triangle_area(t) * terms.map(|((f, weight), b)| weight * f * b[corner]).sum::<f64>()
     };
+    let cut = CutRule::new(f.jumps().to_vec(), None, JUMP_DEPTH);
     Ok(triangles
         .zip(values.chunks_exact(points))
-        .map(|(t, values)| [0, 1, 2].map(|corner| integral(t, values, corner)))
+        .map(|(t, values)| {
+            if cut.is_plain(mesh.corners(t)) {
+                [0, 1, 2].map(|corner| integral(t, values, corner))
+            } else {
+                cut_load(mesh.corners(t), f, &cut)
+            }
+        })
         .collect())
+}
+
+/// `int_T f phi_i` for the three corners of a triangle in which `f` jumps.
+fn cut_load(corners: [[f64; 2]; 3], f: &Function, cut: &CutRule) -> [f64; 3] {
+    let twice_area = twice_signed_area(corners);
+    let mut integrals = [0.0; 3];
+    cut.visit(corners, &mut |point, weight| {
+        let value = weight * f.eval(point[0], point[1]);
+        for (i, integral) in integrals.iter_mut().enumerate() {
+            let hat = twice_signed_area([point, corners[(i + 1) % 3], corners[(i + 2) % 3]]) / twice_area;
+            *integral += value * hat;
+        }
+    });
+    integrals
 }
 
 #[cfg(test)]

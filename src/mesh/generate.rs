@@ -3,7 +3,7 @@
 use thiserror::Error;
 
 use super::polygon::{MAX_MIN_ANGLE, polygon};
-use super::{Mesh, MeshError, Pattern, disk, l_shape, rectangle};
+use super::{Mesh, Pattern, disk, l_shape, rectangle};
 use crate::problem::Domain;
 
 /// More vertices than this are refused: the system of a mesh of this size needs about 64 GiB.
@@ -96,9 +96,9 @@ pub enum GenerateError {
         /// What the triangulation says.
         reason: String,
     },
-    /// Rounding makes vertices of a structured mesh coincide.
+    /// Rounding makes vertices coincide.
     #[error(
-        "rounding makes vertices coincide: scale the domain to a moderate size, and move it nearer to the origin"
+        "rounding makes vertices coincide or lie on one line: scale the domain to a moderate size, move it nearer to the origin, or remove details of that size"
     )]
     Rounding,
     /// Refinement did not end.
@@ -106,9 +106,6 @@ pub enum GenerateError {
         "the refinement does not end: the polygon has features much smaller than `size`; lower `min_angle` or `size`"
     )]
     Incomplete,
-    /// The triangulation is not valid.
-    #[error(transparent)]
-    Mesh(#[from] MeshError),
 }
 
 /// Makes a mesh of `domain`. An unstructured disk, like a structured one, is an inscribed polygon.

@@ -69,7 +69,7 @@ pub fn polygon(
     if triangles.is_empty() {
         return Err(GenerateError::Holes);
     }
-    let mesh = Mesh::new(points, triangles)?;
+    let mesh = Mesh::new(points, triangles).map_err(|_| GenerateError::Rounding)?;
     if !((mesh.area() - area).abs() <= AREA_TOLERANCE * area) {
         return Err(GenerateError::Holes);
     }
@@ -172,6 +172,7 @@ mod tests {
             (polygon(&outer, &[square(2.0, 2.0, 0.2)], 0.1, 25.0), "hole"),
             (polygon(&outer, &[square(0.0, 0.0, 0.5)], 0.1, 25.0), "twice"),
             (polygon(&outer, &[square(0.0, 0.25, 0.5)], 0.1, 25.0), "hole"),
+            (polygon(&[[1e6 + 1.0, 1e6], [1e6, 1e6], [1e6, 1e6 + 1e-9]], &[], 1.0, 0.0), "rounding"),
         ];
         for (k, (result, word)) in refused.into_iter().enumerate() {
             let message = result.expect_err(&format!("entry {k}")).to_string();

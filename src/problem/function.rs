@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-use super::Expression;
+use super::{Expression, Interface};
 
 /// A real function of a point `(x, y)` of the plane: a load (force per area) or a height (length).
 ///
@@ -15,13 +15,35 @@ pub enum Function {
     /// A formula in `x` and `y`, parsed once.
     Expression(Expression),
     /// Any Rust function.
-    Closure(Arc<dyn Fn(f64, f64) -> f64 + Send + Sync>),
+    Closure {
+        /// The function.
+        f: Arc<dyn Fn(f64, f64) -> f64 + Send + Sync>,
+        /// The curves across which it jumps: integrals are cut along them.
+        jumps: Arc<[Interface]>,
+    },
 }
 
 impl Function {
     /// Wraps a closure `(x, y) -> value`.
     pub fn from_fn(f: impl Fn(f64, f64) -> f64 + Send + Sync + 'static) -> Self {
-        Self::Closure(Arc::new(f))
+        Self::piecewise(f, [])
+    }
+
+    /// Wraps a closure that jumps across some curves: integrals follow them. Without that, the quadrature moves a jump by
+    /// up to a tenth of the mesh size.
+    pub fn piecewise(
+        f: impl Fn(f64, f64) -> f64 + Send + Sync + 'static,
+        jumps: impl IntoIterator<Item = Interface>,
+    ) -> Self {
+        Self::Closure { f: Arc::new(f), jumps: jumps.into_iter().collect() }
+    }
+
+    /// The curves across which it jumps, as far as it says.
+    pub fn jumps(&self) -> &[Interface] {
+        match self {
+            Self::Closure { jumps, .. } => jumps,
+            Self::Constant(_) | Self::Expression(_) => &[],
+        }
     }
 
     /// The value at the point `(x, y)`.
@@ -29,7 +51,7 @@ impl Function {
         match self {
             Self::Constant(value) => *value,
             Self::Expression(expression) => expression.eval(x, y),
-            Self::Closure(f) => f(x, y),
+            Self::Closure { f, .. } => f(x, y),
         }
     }
 
@@ -42,7 +64,7 @@ impl Function {
         match self {
             Self::Constant(value) => values.fill(*value),
             Self::Expression(expression) => expression.eval_many(x, y, values),
-            Self::Closure(f) => {
+            Self::Closure { f, .. } => {
                 for ((value, &x), &y) in values.iter_mut().zip(x).zip(y) {
                     *value = f(x, y);
                 }
@@ -68,7 +90,7 @@ impl fmt::Debug for Function {
         match self {
             Self::Constant(value) => write!(f, "{value}"),
             Self::Expression(expression) => write!(f, "{expression}"),
-            Self::Closure(_) => f.write_str("<closure>"),
+            Self::Closure { .. } => f.write_str("<closure>"),
         }
     }
 }

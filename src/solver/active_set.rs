@@ -39,7 +39,7 @@ impl ContactSolver for ActiveSet {
         options.check()?;
         let start = Instant::now();
         let guess = match &options.warm_start {
-            Some(candidate) if fits(d, candidate) => guess(d, candidate),
+            Some(start) if start.fits(d) => guess(d, &start.displacement, &start.multiplier),
             _ => vec![false; d.interior().len()],
         };
         let deadline = options.time_limit.map(|seconds| start + Duration::from_secs_f64(seconds));
@@ -106,15 +106,14 @@ pub(super) fn settle(
     Ok(Settled { displacement, multiplier, repairs, status })
 }
 
-/// The vertices that touch in `candidate`.
-pub(super) fn guess(d: &Discretization, candidate: &Candidate) -> Vec<bool> {
+/// The vertices that touch, as displacements and multipliers have it.
+pub(super) fn guess(d: &Discretization, [u1, u2]: &[Vec<f64>; 2], multiplier: &[f64]) -> Vec<bool> {
     let scales = d.scales();
-    let [u1, u2] = &candidate.displacement;
     let touches = |(&a, y): (&usize, &f64)| {
         let action = y / (d.dual_area()[a] * scales.force_density);
         action > CAUTION * (u1[a] - u2[a]) / scales.displacement
     };
-    d.interior().iter().zip(&candidate.multiplier).map(touches).collect()
+    d.interior().iter().zip(multiplier).map(touches).collect()
 }
 
 /// Vertices that pull leave the contact set, vertices that have passed through each other join it.
@@ -122,10 +121,4 @@ fn repair(d: &Discretization, active: &[bool], gap: &Gap) -> Vec<bool> {
     let through = -GAP_ROUNDING * d.scales().displacement;
     let pushes = |k: usize| gap.y[k] >= -MULTIPLIER_ROUNDING * gap.y_terms[k];
     (0..active.len()).map(|k| if active[k] { pushes(k) } else { gap.w[k] < through }).collect()
-}
-
-/// Whether a candidate has the lengths of this discretization.
-fn fits(d: &Discretization, candidate: &Candidate) -> bool {
-    candidate.displacement.iter().all(|u| u.len() == d.mesh().points().len())
-        && candidate.multiplier.len() == d.interior().len()
 }

@@ -36,7 +36,7 @@ pub(super) fn polish(d: &Discretization, qp: &QpProblem, candidate: &mut Candida
         KktResiduals::new(qp, &unknowns(d, displacement), multiplier).worst()
     };
     let limits = Limits { steps: MAX_STEPS, deadline: None };
-    let polished = settle(d, guess(d, candidate), &limits).ok()?;
+    let polished = settle(d, guess(d, &candidate.displacement, &candidate.multiplier), &limits).ok()?;
     let residual_before = residual(&candidate.displacement, &candidate.multiplier);
     let residual_after = residual(&polished.displacement, &polished.multiplier);
     let kept = residual_after < residual_before;

@@ -53,8 +53,8 @@ impl ContactSolver for QpSolver {
 }
 
 fn qp_options(d: &Discretization, options: &SolverOptions) -> QpOptions {
-    let warm_start =
-        options.warm_start.as_ref().map(|start| (unknowns(d, &start.displacement), start.multiplier.clone()));
+    let start = options.warm_start.as_ref().filter(|start| start.fits(d));
+    let warm_start = start.map(|start| (unknowns(d, &start.displacement), start.multiplier.clone()));
     QpOptions {
         tolerance: options.tolerance,
         max_iterations: options.max_iterations,
@@ -79,11 +79,8 @@ fn solve_nondimensional(
     }
     let scaled = |values: &[f64], scale: f64| values.iter().map(|value| value * scale).collect::<Vec<_>>();
     let (primal, dual) = (qp.primal_scale(), qp.dual_scale());
-    let warm_start = options
-        .warm_start
-        .as_ref()
-        .map(|(x, y)| (scaled(x, primal.recip()), scaled(y, dual.recip())))
-        .filter(|(x, y)| x.len() == qp.q().len() && y.len() == qp.b().len());
+    let start = options.warm_start.as_ref();
+    let warm_start = start.map(|(x, y)| (scaled(x, primal.recip()), scaled(y, dual.recip())));
     let solution = backend.solve(&qp.nondimensional(), &QpOptions { warm_start, ..options.clone() })?;
     if solution.x.len() != qp.q().len() || solution.y.len() != qp.b().len() {
         let reason = "it returned vectors of the wrong length".into();

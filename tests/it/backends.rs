@@ -5,7 +5,7 @@ use membrane_contact::discretization::Discretization;
 use membrane_contact::mesh::{Pattern, rectangle};
 use membrane_contact::problem::Case;
 use membrane_contact::qp::{Clarabel, KktResiduals, QpBackend, QpOptions, QpProblem, Status, contact_qp};
-use membrane_contact::solver::{ActiveSet, ContactSolver, SolverOptions};
+use membrane_contact::solver::{ActiveSet, ContactSolver, SolverOptions, StartingPoint};
 use membrane_contact::sprs::{CsMat, TriMat};
 
 use crate::common::{TOLERANCE, distance, exact, solve, solvers};
@@ -172,7 +172,7 @@ fn osqp_needs_fewer_iterations_from_a_warm_start() {
     let nearby = exact(Case::Circle, &[("q", 10.1)]).problem().unwrap();
     let solution = solve(&mut QpSolver::new(Osqp), &Discretization::new(&problem, &mesh).unwrap(), true);
     let d = Discretization::new(&nearby, &mesh).unwrap();
-    let [cold, warm] = [None, Some(solution)].map(|warm_start| {
+    let [cold, warm] = [None, Some(solution.into())].map(|warm_start| {
         let options = SolverOptions { warm_start, ..SolverOptions::default() };
         QpSolver::new(Osqp).solve(&d, &options).expect("it runs").statistics.iterations
     });
@@ -182,16 +182,16 @@ fn osqp_needs_fewer_iterations_from_a_warm_start() {
 #[test]
 fn the_active_set_needs_one_solve_from_its_own_answer_and_few_from_a_nearby_one() {
     let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [24, 24], Pattern::Right).unwrap();
-    let steps = |parameters: &[(&str, f64)], warm_start| {
+    let steps = |parameters: &[(&str, f64)], warm_start: Option<StartingPoint>| {
         let problem = exact(Case::Circle, parameters).problem().unwrap();
         let d = Discretization::new(&problem, &mesh).unwrap();
         let options = SolverOptions { warm_start, ..SolverOptions::default() };
         ActiveSet.solve(&d, &options).expect("it runs")
     };
     let cold = steps(&[], None);
-    assert_eq!(steps(&[], Some(cold.clone())).statistics.iterations, 1);
+    assert_eq!(steps(&[], Some(cold.clone().into())).statistics.iterations, 1);
     let from_cold = steps(&[("R", 0.32)], None).statistics.iterations;
-    let from_nearby = steps(&[("R", 0.32)], Some(cold)).statistics.iterations;
+    let from_nearby = steps(&[("R", 0.32)], Some(cold.into())).statistics.iterations;
     assert!(from_nearby < from_cold, "{from_nearby} steps from a nearby solution, {from_cold} without");
 }
 

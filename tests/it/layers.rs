@@ -3,8 +3,20 @@
 use std::path::{Path, PathBuf};
 
 /// The way of the data.
-const LAYERS: [&str; 9] =
-    ["problem", "mesh", "fem", "discretization", "qp", "solver", "action", "output", "cli"];
+const LAYERS: [&str; 12] = [
+    "problem",
+    "mesh",
+    "fem",
+    "discretization",
+    "qp",
+    "solver",
+    "action",
+    "flux",
+    "error",
+    "study",
+    "output",
+    "cli",
+];
 
 /// The layers that a source text names after `crate::` outside of its comments and its unit tests.
 fn layers_used(text: &str) -> Vec<String> {

@@ -14,3 +14,6 @@ mod plate;
 mod program;
 #[cfg(feature = "cli")]
 mod readme;
+mod stability;
+#[cfg(feature = "cli")]
+mod theory;

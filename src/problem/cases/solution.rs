@@ -65,11 +65,11 @@ impl ExactSolution {
         self.decoupled.height(x, y)
     }
 
-    /// The loads `[f1, f2]`, as data of a problem.
+    /// The loads `[f1, f2]`, as data of a problem: integrals are cut along the [`interfaces`](Self::interfaces).
     pub fn load_functions(&self) -> [Function; 2] {
         [0, 1].map(|membrane| {
             let solution = self.clone();
-            Function::from_fn(move |x, y| solution.load(x, y)[membrane])
+            Function::piecewise(move |x, y| solution.load(x, y)[membrane], self.interfaces())
         })
     }
 

@@ -1,0 +1,123 @@
+//! `membranes converge`.
+
+use std::io::{self, Write};
+use std::path::Path;
+
+use super::Failure;
+use super::args::ConvergeArguments;
+use super::progress::Progress;
+use super::setup::{Setup, make_folder, options, solver, write_file};
+use super::terminal::{grouped, print};
+use crate::study::{ConvergenceStudy, LevelErrors, MEASURES, StudyError, fitted_rate, markdown, rate};
+
+const LEVELS: &str = "summary.csv";
+const TABLE: &str = "convergence.md";
+/// What the levels belong to: a run of another case file, solver or first mesh starts anew.
+const ORIGIN: &str = "converge.toml";
+
+pub(super) fn run(arguments: &ConvergeArguments) -> Result<(), Failure> {
+    let progress = Progress::new(arguments.case.quiet);
+    let mut setup = Setup::new(&arguments.case, &progress)?;
+    let Some(exact) = setup.case.exact.take() else {
+        let remedy =
+            "give `case = \"...\"` in place of [membranes] and [domain]; `membranes cases` lists them";
+        return Err(Failure::Input(format!("{}: errors need a known solution: {remedy}", setup.name)));
+    };
+    if let Some(backend) = arguments.backend {
+        setup.case.solver.backend = backend;
+    }
+    let folder = arguments.case.output_folder(arguments.out.as_ref());
+    make_folder(&folder)?;
+    let backend = setup.case.solver.backend.as_str();
+    let origin =
+        format!("# solved by {backend}, refined {} times first\n{}", arguments.case.refine, setup.text);
+    let mut levels = levels_so_far(&folder, &origin)?;
+    levels.truncate(arguments.levels);
+
+    let settings = &setup.case.solver;
+    let solver = solver(settings.backend);
+    let failure = |name: &str, error: StudyError| match error {
+        StudyError::Rejected { .. } | StudyError::Solver(_) | StudyError::Measure(_) => {
+            Failure::NotCertified(format!("{name}: {error}"))
+        }
+        _ => Failure::Input(format!("{name}: {error}")),
+    };
+    let mut study = ConvergenceStudy::new(exact, setup.family, solver, options(settings))
+        .map_err(|error| failure(&setup.name, error))?;
+    let known = levels.len();
+    if known < arguments.levels {
+        for level in 0..arguments.levels {
+            progress.stage(format!("level {} of {}", level + 1, arguments.levels));
+            if level < known {
+                study.skip_level().map_err(|error| failure(&setup.name, error))?;
+                continue;
+            }
+            levels.push(study.next_level().map_err(|error| failure(&setup.name, error))?);
+            write_file(&folder.join(LEVELS), |out| write_csv(&levels, out))?;
+            write_file(&folder.join(TABLE), |out| out.write_all(markdown(&levels).as_bytes()))?;
+        }
+    }
+    drop(progress);
+    if !arguments.case.quiet {
+        print(&table(&setup.case.title, &levels, &folder))?;
+    }
+    Ok(())
+}
+
+/// The levels that an earlier run of the same origin has left; none when it was another one.
+fn levels_so_far(folder: &Path, origin: &str) -> Result<Vec<LevelErrors>, Failure> {
+    let same_origin = std::fs::read_to_string(folder.join(ORIGIN)).is_ok_and(|text| text == origin);
+    if same_origin && let Ok(mut reader) = csv::Reader::from_path(folder.join(LEVELS)) {
+        let levels: Result<Vec<LevelErrors>, _> = reader.deserialize().collect();
+        // A table that is not ours, or of another version, is made anew.
+        return Ok(levels.unwrap_or_default());
+    }
+    write_file(&folder.join(ORIGIN), |out| out.write_all(origin.as_bytes()))?;
+    Ok(Vec::new())
+}
+
+fn write_csv(levels: &[LevelErrors], out: &mut dyn Write) -> io::Result<()> {
+    let mut writer = csv::Writer::from_writer(out);
+    levels.iter().try_for_each(|level| writer.serialize(level))?;
+    writer.flush()
+}
+
+/// The errors with their rates, for the eye.
+fn table(title: &str, levels: &[LevelErrors], folder: &Path) -> String {
+    let mut text = format!("{title}\n  vertices");
+    for measure in MEASURES {
+        text += &format!(" {:>11}", shortened(measure.name));
+    }
+    text.push('\n');
+    for (k, level) in levels.iter().enumerate() {
+        text += &format!("{:>10}", grouped(level.vertices));
+        for measure in MEASURES {
+            text += &format!(" {:>11.2e}", (measure.of)(level));
+        }
+        text.push('\n');
+        if k > 0 {
+            text += &format!("{:>10}", "rate");
+            for measure in MEASURES {
+                text += &format!(" {:>11}", rate_text(rate(measure, &levels[k - 1], level)));
+            }
+            text.push('\n');
+        }
+    }
+    if levels.len() > 2 {
+        text += &format!("{:>10}", "all levels");
+        for measure in MEASURES {
+            text += &format!(" {:>11}", rate_text(fitted_rate(measure, levels)));
+        }
+        text.push('\n');
+    }
+    text + &format!("  files: {}/{{{LEVELS}, {TABLE}}}\n", folder.display())
+}
+
+fn rate_text(rate: Option<f64>) -> String {
+    rate.map_or_else(|| "-".into(), |rate| format!("{rate:.2}"))
+}
+
+/// A heading that fits into a column.
+fn shortened(name: &str) -> String {
+    name.replace("lambda in ", "lambda ").replace("contact area", "area")
+}

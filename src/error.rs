@@ -1,0 +1,39 @@
+//! Errors of solutions: their norms against an exact solution.
+
+mod lift;
+mod multigrid;
+mod norms;
+#[cfg(test)]
+mod tests;
+
+pub use lift::DualNorm;
+pub use norms::{ContactAreas, ErrorNorms};
+
+use thiserror::Error;
+
+use crate::mesh::MeshError;
+
+/// The error of a solution cannot be measured.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum MeasureError {
+    /// Solution and discretization do not belong together.
+    #[error("the solution has {values} values, the mesh {vertices} vertices: give the discretization that was solved")]
+    OtherMesh {
+        /// Entries of the solution's vectors.
+        values: usize,
+        /// Vertices of the mesh.
+        vertices: usize,
+    },
+    /// The triangles are too small to be divided.
+    #[error("the triangles cannot be divided for the lift of the action: {0}")]
+    SubTriangulation(#[from] MeshError),
+    /// The stiffness matrix cannot be factored.
+    #[error("the lift of the action cannot be factored: memory is short, or the mesh has triangles that are too thin")]
+    NotFactored,
+    /// The iteration for the lift does not converge.
+    #[error("the lift of the action has not converged in {iterations} iterations: the mesh has triangles that are too thin")]
+    NotConverged {
+        /// The limit.
+        iterations: usize,
+    },
+}

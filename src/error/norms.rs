@@ -1,0 +1,258 @@
+//! The norms of the error of a solution.
+
+use rayon::prelude::*;
+
+use super::MeasureError;
+use super::lift::{DualNorm, dual_norm};
+use crate::action::ContactSolution;
+use crate::discretization::Discretization;
+use crate::fem::CutRule;
+use crate::mesh::{Mesh, SubTriangulation, VertexKind, twice_signed_area};
+use crate::problem::{Domain, ExactSolution};
+
+/// Subdivisions of the triangles of `S_h` that a curve crosses: their parts are smaller than `h / 30`.
+const DEPTH: usize = 4;
+
+/// Uniform refinements of `S_h` on which the action is lifted.
+const LIFT_REFINEMENTS: usize = 1;
+
+/// Triangles that are integrated together: enough for all threads, few enough to need no memory.
+const BATCH: usize = 1 << 16;
+
+/// How far a discrete solution is from the exact one.
+///
+/// Integrals run over the mesh: where it covers a disk only up to an inscribed polygon, over that polygon. Triangles of
+/// `S_h` are integrated by a rule of degree 4, divided where the exact solution is less smooth.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ErrorNorms {
+    /// `|u_i - u_ih|_{H1}`, the seminorm, of each membrane (3.5).
+    pub h1: [f64; 2],
+    /// `||u_i - u_ih||_{L2}` of each membrane.
+    pub l2: [f64; 2],
+    /// `sqrt(sum_i mu_i |u_i - u_ih|_{H1}^2)`.
+    pub energy: f64,
+    /// The largest `|u_i - u_ih|` of each membrane at a vertex. Unit: length.
+    pub nodal_max: [f64; 2],
+    /// The largest `|u_i - u_ih|` of each membrane at a vertex or a point of the quadrature. Unit: length.
+    pub max: [f64; 2],
+    /// `||lambda - lambda_h||_{L2}` (4.36), `lambda_h` constant on the dual cells and zero on those of the boundary.
+    pub lambda_l2: f64,
+    /// `||lambda - lambda_h||_{H^-1}` (4.34).
+    pub lambda_dual: DualNorm,
+    /// The areas of contact.
+    pub contact: ContactAreas,
+    /// The largest relative change that the last subdivision at curves and corner makes in the norms of `h1`, `l2`,
+    /// `lambda_l2` and in the exact areas of contact: of the order of the quadrature error of what is not smooth there.
+    pub quadrature: f64,
+}
+
+/// Areas of contact. Between the exact ones lies the biactive set, where the membranes touch without any action; on it
+/// rounding decides what the discrete set is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactAreas {
+    /// The dual cells of the vertices in contact.
+    pub discrete: f64,
+    /// Where the exact action is positive.
+    pub pushing: f64,
+    /// Where the exact gap is zero.
+    pub touching: f64,
+}
+
+impl ContactAreas {
+    /// The distance of the discrete area from the interval between the exact ones: without a biactive set, its error.
+    pub fn error(&self) -> f64 {
+        (self.pushing - self.discrete).max(self.discrete - self.touching).max(0.0)
+    }
+}
+
+impl ErrorNorms {
+    /// Measures a solution of `d` against the exact one. Linear time but for a Cholesky factorisation of `d`'s stiffness
+    /// matrix, which the lift of the action uses.
+    ///
+    /// # Errors
+    /// [`MeasureError`] when the solution is not one of `d`, or the lift cannot be found.
+    pub fn new(
+        d: &Discretization,
+        solution: &ContactSolution,
+        exact: &ExactSolution,
+    ) -> Result<Self, MeasureError> {
+        let fields = Fields { displacement: solution.displacement(), lambda: solution.lambda() };
+        Self::of_fields(d, fields, solution.contact_area(), &cut_rule(exact, DEPTH), exact)
+    }
+
+    /// The norms for any displacements and action.
+    pub(super) fn of_fields(
+        d: &Discretization,
+        fields: Fields,
+        contact_area: f64,
+        rule: &CutRule,
+        exact: &ExactSolution,
+    ) -> Result<Self, MeasureError> {
+        let (values, vertices) = (fields.lambda.len(), d.mesh().points().len());
+        if values != vertices {
+            return Err(MeasureError::OtherMesh { values, vertices });
+        }
+        let sub = SubTriangulation::new(d.mesh())?;
+        let [sums, shallow] = integrate(d.mesh(), &sub, fields, rule, exact);
+        let lambda_dual = dual_norm(d, &sub, rule, LIFT_REFINEMENTS, |t, [x, y]| {
+            exact.lambda(x, y) - fields.lambda[sub.vertex_of(t)]
+        })?;
+        let nodal_max = nodal_max(d.mesh(), fields.displacement, exact);
+        let ([mu1, mu2], [first, second]) = (exact.tension(), sums.h1_sq);
+        Ok(Self {
+            h1: sums.h1_sq.map(f64::sqrt),
+            l2: sums.l2_sq.map(f64::sqrt),
+            energy: (mu1 * first + mu2 * second).sqrt(),
+            nodal_max,
+            max: [0, 1].map(|i| nodal_max[i].max(sums.max[i])),
+            lambda_l2: sums.lambda_sq.sqrt(),
+            lambda_dual,
+            contact: ContactAreas { discrete: contact_area, pushing: sums.pushing, touching: sums.touching },
+            quadrature: sums.largest_change(&shallow),
+        })
+    }
+}
+
+/// The rule that follows the curves and the corner at which an exact solution is less smooth.
+pub(super) fn cut_rule(exact: &ExactSolution, depth: usize) -> CutRule {
+    let corner = matches!(exact.domain(), Domain::LShape { .. }).then_some([0.0, 0.0]);
+    CutRule::new(exact.interfaces(), corner, depth)
+}
+
+/// What is measured, over vertices.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Fields<'a> {
+    pub(super) displacement: &'a [Vec<f64>; 2],
+    pub(super) lambda: &'a [f64],
+}
+
+/// Integrals over a part of the domain.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sums {
+    h1_sq: [f64; 2],
+    l2_sq: [f64; 2],
+    max: [f64; 2],
+    lambda_sq: f64,
+    pushing: f64,
+    touching: f64,
+}
+
+impl Sums {
+    fn add(&mut self, other: &Self) {
+        for i in 0..2 {
+            self.h1_sq[i] += other.h1_sq[i];
+            self.l2_sq[i] += other.l2_sq[i];
+            self.max[i] = self.max[i].max(other.max[i]);
+        }
+        self.lambda_sq += other.lambda_sq;
+        self.pushing += other.pushing;
+        self.touching += other.touching;
+    }
+
+    fn largest_change(&self, other: &Self) -> f64 {
+        let figures = |sums: &Self| {
+            let norms_sq = [sums.h1_sq[0], sums.h1_sq[1], sums.l2_sq[0], sums.l2_sq[1], sums.lambda_sq];
+            norms_sq.into_iter().map(f64::sqrt).chain([sums.pushing, sums.touching])
+        };
+        let changes = figures(self).zip(figures(other)).filter(|(deep, _)| *deep > 0.0);
+        changes.map(|(deep, shallow)| (deep - shallow).abs() / deep).fold(0.0, f64::max)
+    }
+}
+
+/// An affine function, as its value at a point and its gradient.
+#[derive(Clone, Copy)]
+struct Affine {
+    origin: [f64; 2],
+    value: f64,
+    gradient: [f64; 2],
+}
+
+impl Affine {
+    /// The function with these values at the corners of a triangle.
+    fn through(corners: [[f64; 2]; 3], [u, v, w]: [f64; 3]) -> Self {
+        let [a, b, c] = corners;
+        let scale = 1.0 / twice_signed_area(corners);
+        let (along_b, along_c) = (scale * (v - u), scale * (w - u));
+        let gradient = [
+            along_b * (c[1] - a[1]) - along_c * (b[1] - a[1]),
+            along_c * (b[0] - a[0]) - along_b * (c[0] - a[0]),
+        ];
+        Self { origin: a, value: u, gradient }
+    }
+
+    fn at(&self, [x, y]: [f64; 2]) -> f64 {
+        self.value + self.gradient[0] * (x - self.origin[0]) + self.gradient[1] * (y - self.origin[1])
+    }
+}
+
+/// The integrals over the domain, by the rule and with one subdivision less.
+fn integrate(
+    mesh: &Mesh,
+    sub: &SubTriangulation,
+    fields: Fields,
+    rule: &CutRule,
+    exact: &ExactSolution,
+) -> [Sums; 2] {
+    let shallower = rule.shallower();
+    let on_triangle = |k: usize| {
+        let values = |i: usize| mesh.triangles()[k].map(|a| fields.displacement[i][a]);
+        let u_h = [0, 1].map(|i| Affine::through(mesh.corners(k), values(i)));
+        let mut sums = [Sums::default(); 2];
+        for t in 6 * k..6 * (k + 1) {
+            let corners = sub.mesh().corners(t);
+            let lambda_h = fields.lambda[sub.vertex_of(t)];
+            let deep = sums_on(corners, rule, &u_h, lambda_h, exact);
+            let plain = rule.is_plain(corners);
+            sums[0].add(&deep);
+            sums[1].add(&if plain { deep } else { sums_on(corners, &shallower, &u_h, lambda_h, exact) });
+        }
+        sums
+    };
+    let triangles = mesh.triangles().len();
+    let mut total = [Sums::default(); 2];
+    for start in (0..triangles).step_by(BATCH) {
+        let end = (start + BATCH).min(triangles);
+        let batch: Vec<_> = (start..end).into_par_iter().map(on_triangle).collect();
+        // Added in one order, whatever the number of threads.
+        for sums in &batch {
+            (0..2).for_each(|depth| total[depth].add(&sums[depth]));
+        }
+    }
+    total
+}
+
+/// The integrals over one triangle of `S_h`.
+fn sums_on(
+    corners: [[f64; 2]; 3],
+    rule: &CutRule,
+    u_h: &[Affine; 2],
+    lambda_h: f64,
+    exact: &ExactSolution,
+) -> Sums {
+    let mut sums = Sums::default();
+    rule.visit(corners, &mut |point, weight| {
+        let [x, y] = point;
+        let (u, grad_u, lambda) = (exact.u(x, y), exact.grad_u(x, y), exact.lambda(x, y));
+        for i in 0..2 {
+            let error = u[i] - u_h[i].at(point);
+            let [dx, dy] = [0, 1].map(|axis| grad_u[i][axis] - u_h[i].gradient[axis]);
+            sums.l2_sq[i] += weight * error * error;
+            sums.h1_sq[i] += weight * (dx * dx + dy * dy);
+            sums.max[i] = sums.max[i].max(error.abs());
+        }
+        sums.lambda_sq += weight * (lambda - lambda_h).powi(2);
+        sums.pushing += weight * f64::from(lambda > 0.0);
+        sums.touching += weight * f64::from(u[0] == u[1]);
+    });
+    sums
+}
+
+fn nodal_max(mesh: &Mesh, displacement: &[Vec<f64>; 2], exact: &ExactSolution) -> [f64; 2] {
+    let mut largest = [0.0f64; 2];
+    for (a, [x, y]) in mesh.points().iter().enumerate().filter(|(a, _)| mesh.kind()[*a] != VertexKind::Unused)
+    {
+        let u = exact.u(*x, *y);
+        (0..2).for_each(|i| largest[i] = largest[i].max((u[i] - displacement[i][a]).abs()));
+    }
+    largest
+}

@@ -1,0 +1,5 @@
+mod equilibrium;
+mod identities;
+mod lemma_17;
+mod properties;
+mod samples;

@@ -1,0 +1,160 @@
+//! Errors on a sequence of refined meshes.
+
+use std::time::Instant;
+
+use thiserror::Error;
+
+use super::LevelErrors;
+use crate::action::{ContactSolution, Rejected, certify};
+use crate::discretization::{Discretization, DiscretizationError};
+use crate::error::{ErrorNorms, MeasureError};
+use crate::mesh::{MeshError, MeshFamily};
+use crate::problem::{ContactProblem, ExactSolution, ProblemError};
+use crate::solver::{ContactSolver, SolverError, SolverOptions, StartingPoint};
+
+/// Solves a case with a known solution on finer and finer meshes, each solve started from the one before.
+pub struct ConvergenceStudy {
+    exact: ExactSolution,
+    problem: ContactProblem,
+    family: MeshFamily,
+    solver: Box<dyn ContactSolver>,
+    options: SolverOptions,
+    level: usize,
+    /// What the last level found: displacements, and the action on the dual cells, over vertices.
+    last: Option<[Vec<f64>; 3]>,
+}
+
+/// A level of a study fails.
+#[derive(Debug, Error)]
+pub enum StudyError {
+    /// The data make no problem.
+    #[error(transparent)]
+    Problem(#[from] ProblemError),
+    /// The mesh cannot be refined further.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// The problem cannot be posed.
+    #[error(transparent)]
+    Discretization(#[from] DiscretizationError),
+    /// The solver cannot run.
+    #[error(transparent)]
+    Solver(#[from] SolverError),
+    /// Its result is not certified.
+    #[error("level {level}: {rejected}")]
+    Rejected {
+        /// The level.
+        level: usize,
+        /// Why.
+        rejected: Box<Rejected>,
+    },
+    /// The errors cannot be measured.
+    #[error(transparent)]
+    Measure(#[from] MeasureError),
+}
+
+impl ConvergenceStudy {
+    /// A study that starts on the current mesh of `family`.
+    ///
+    /// # Errors
+    /// When the data of the case make no problem.
+    pub fn new(
+        exact: ExactSolution,
+        family: MeshFamily,
+        solver: Box<dyn ContactSolver>,
+        options: SolverOptions,
+    ) -> Result<Self, StudyError> {
+        let problem = exact.problem()?;
+        Ok(Self { exact, problem, family, solver, options, level: 0, last: None })
+    }
+
+    /// Vertices of the coming level.
+    pub fn vertices(&self) -> usize {
+        self.family.mesh().points().len()
+    }
+
+    /// Solves on the next mesh and measures the errors.
+    ///
+    /// # Errors
+    /// [`StudyError`].
+    pub fn next_level(&mut self) -> Result<LevelErrors, StudyError> {
+        self.on_next_mesh(|exact, d, solution, level| {
+            let start = Instant::now();
+            let norms = ErrorNorms::new(d, solution, exact)?;
+            let quality = d.mesh().quality();
+            let [first, second] = norms.h1;
+            Ok(LevelErrors {
+                level,
+                vertices: d.mesh().points().len(),
+                triangles: d.mesh().triangles().len(),
+                h: quality.h_max,
+                h_min: quality.h_min,
+                h1: first.hypot(second),
+                l2: norms.l2[0].hypot(norms.l2[1]),
+                energy: norms.energy,
+                nodal: norms.nodal_max[0].max(norms.nodal_max[1]),
+                lambda_l2: norms.lambda_l2,
+                lambda_dual: norms.lambda_dual.value,
+                lambda_dual_estimate: norms.lambda_dual.estimate(),
+                contact_area: norms.contact.error(),
+                quadrature: norms.quadrature,
+                iterations: solution.statistics().iterations,
+                solve_seconds: 0.0,
+                norm_seconds: start.elapsed().as_secs_f64(),
+            })
+        })
+        .map(|(errors, solve_seconds)| LevelErrors { solve_seconds, ..errors })
+    }
+
+    /// Solves on the next mesh without measuring: for a level whose errors are known, to start the one after it from.
+    ///
+    /// # Errors
+    /// [`StudyError`].
+    pub fn skip_level(&mut self) -> Result<(), StudyError> {
+        self.on_next_mesh(|_, _, _, _| Ok(())).map(|_| ())
+    }
+
+    /// Refines (but for the first level), solves from the last level's solution, certifies, and hands the solution to
+    /// `measure`; returns its result and the seconds up to there.
+    fn on_next_mesh<T>(
+        &mut self,
+        measure: impl FnOnce(&ExactSolution, &Discretization, &ContactSolution, usize) -> Result<T, StudyError>,
+    ) -> Result<(T, f64), StudyError> {
+        let start = Instant::now();
+        let level = self.level;
+        let prolonged = match self.last.take() {
+            None => None,
+            Some(last) => {
+                let parents = self.family.refine()?;
+                Some(last.map(|values| prolong(values, &parents)))
+            }
+        };
+        let d = Discretization::new(&self.problem, self.family.mesh())?;
+        let warm_start = prolonged.map(|prolonged| starting_point(&d, prolonged));
+        let options = SolverOptions { warm_start, ..self.options.clone() };
+        let found = self.solver.solve(&d, &options)?;
+        let solution = certify(&d, found, self.options.tolerance)
+            .map_err(|rejected| StudyError::Rejected { level, rejected })?;
+        let seconds = start.elapsed().as_secs_f64();
+        let measured = measure(&self.exact, &d, &solution, level)?;
+        let [u1, u2] = solution.displacement().clone();
+        self.last = Some([u1, u2, solution.lambda().to_vec()]);
+        self.level += 1;
+        Ok((measured, seconds))
+    }
+}
+
+/// A P1 function on the refined mesh: the mean of the ends at the midpoint of an edge.
+fn prolong(mut values: Vec<f64>, parents: &[[usize; 2]]) -> Vec<f64> {
+    values.extend(parents.iter().map(|_| 0.0));
+    let coarse = values.len() - parents.len();
+    for (k, &[a, b]) in parents.iter().enumerate() {
+        values[coarse + k] = 0.5 * (values[a] + values[b]);
+    }
+    values
+}
+
+/// Prolonged displacements and action as a point to start from.
+fn starting_point(d: &Discretization, [u1, u2, lambda]: [Vec<f64>; 3]) -> StartingPoint {
+    let multiplier = d.interior().iter().map(|&a| lambda[a] * d.dual_area()[a]).collect();
+    StartingPoint { displacement: [u1, u2], multiplier }
+}

@@ -1,0 +1,165 @@
+//! The figures of a convergence study and their rates.
+
+use serde::{Deserialize, Serialize};
+
+/// One level: a mesh and the errors of the solution on it. Written as a row of `summary.csv`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct LevelErrors {
+    /// The number of the level, from 0.
+    pub level: usize,
+    /// Vertices of the mesh.
+    pub vertices: usize,
+    /// Triangles of the mesh.
+    pub triangles: usize,
+    /// The longest edge.
+    pub h: f64,
+    /// The shortest edge.
+    pub h_min: f64,
+    /// `sqrt(sum_i |u_i - u_ih|_{H1}^2)`.
+    pub h1: f64,
+    /// `sqrt(sum_i ||u_i - u_ih||_{L2}^2)`.
+    pub l2: f64,
+    /// `sqrt(sum_i mu_i |u_i - u_ih|_{H1}^2)`.
+    pub energy: f64,
+    /// The largest error of both displacements at a vertex.
+    pub nodal: f64,
+    /// `||lambda - lambda_h||_{L2}`.
+    pub lambda_l2: f64,
+    /// `||lambda - lambda_h||_{H^-1}`.
+    pub lambda_dual: f64,
+    /// An estimate of what is missing in it, by one more refinement of the lift.
+    pub lambda_dual_estimate: f64,
+    /// The error of the contact area.
+    pub contact_area: f64,
+    /// The relative quadrature error of the norms.
+    pub quadrature: f64,
+    /// Iterations of the solver.
+    pub iterations: usize,
+    /// Seconds for mesh, assembly and solution.
+    pub solve_seconds: f64,
+    /// Seconds for the norms.
+    pub norm_seconds: f64,
+}
+
+/// An error whose rate is of interest.
+#[derive(Debug, Clone, Copy)]
+pub struct Measure {
+    /// The heading in tables and pictures.
+    pub name: &'static str,
+    /// Its value on a level.
+    pub of: fn(&LevelErrors) -> f64,
+}
+
+/// The errors of the tables, in their order.
+pub const MEASURES: [Measure; 6] = [
+    Measure { name: "u in H1", of: |level| level.h1 },
+    Measure { name: "u in L2", of: |level| level.l2 },
+    Measure { name: "u at nodes", of: |level| level.nodal },
+    Measure { name: "lambda in L2", of: |level| level.lambda_l2 },
+    Measure { name: "lambda in H^-1", of: |level| level.lambda_dual },
+    Measure { name: "contact area", of: |level| level.contact_area },
+];
+
+/// The order of an error between two levels, `ln(e_0 / e_1) / ln(h_0 / h_1)`; `None` when one of them is zero.
+pub fn rate(measure: Measure, coarse: &LevelErrors, fine: &LevelErrors) -> Option<f64> {
+    let ratio = (measure.of)(coarse) / (measure.of)(fine);
+    let rate = ratio.ln() / (coarse.h / fine.h).ln();
+    rate.is_finite().then_some(rate)
+}
+
+/// The order of an error over all levels: the slope of the line through `(ln h, ln error)` by least squares; `None` with
+/// fewer than two levels, or when an error is zero.
+pub fn fitted_rate(measure: Measure, levels: &[LevelErrors]) -> Option<f64> {
+    let points: Vec<[f64; 2]> = levels.iter().map(|level| [level.h.ln(), (measure.of)(level).ln()]).collect();
+    let mean = |axis: usize| points.iter().map(|point| point[axis]).sum::<f64>() / points.len() as f64;
+    let [mean_h, mean_error] = [mean(0), mean(1)];
+    let covariance: f64 = points.iter().map(|[h, error]| (h - mean_h) * (error - mean_error)).sum();
+    let variance: f64 = points.iter().map(|[h, _]| (h - mean_h).powi(2)).sum();
+    let rate = covariance / variance;
+    rate.is_finite().then_some(rate)
+}
+
+/// The levels as a Markdown table: each error with its rate from the level before, and over all levels.
+pub fn markdown(levels: &[LevelErrors]) -> String {
+    let mut text = String::from("| vertices | h |");
+    for measure in MEASURES {
+        text += &format!(" {} | rate |", measure.name);
+    }
+    text += "\n|---:|---:|";
+    text += &"---:|---:|".repeat(MEASURES.len());
+    text += "\n";
+    for (k, level) in levels.iter().enumerate() {
+        text += &format!("| {} | {:.2e} |", level.vertices, level.h);
+        for measure in MEASURES {
+            let rate = k.checked_sub(1).and_then(|before| rate(measure, &levels[before], level));
+            let rate = rate.map_or_else(String::new, |rate| format!("{rate:.2}"));
+            text += &format!(" {:.2e} | {rate} |", (measure.of)(level));
+        }
+        text += "\n";
+    }
+    text += "| all levels | |";
+    for measure in MEASURES {
+        text += &format!(
+            " | {} |",
+            fitted_rate(measure, levels).map_or_else(String::new, |rate| format!("{rate:.2}"))
+        );
+    }
+    text + "\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn level(level: usize, h: f64, error: f64) -> LevelErrors {
+        LevelErrors {
+            level,
+            vertices: 10,
+            triangles: 20,
+            h,
+            h_min: h,
+            h1: error,
+            l2: error,
+            energy: error,
+            nodal: error,
+            lambda_l2: error,
+            lambda_dual: error,
+            lambda_dual_estimate: 0.0,
+            contact_area: 0.0,
+            quadrature: 0.0,
+            iterations: 1,
+            solve_seconds: 0.0,
+            norm_seconds: 0.0,
+        }
+    }
+
+    #[test]
+    fn rates_are_the_powers_of_the_mesh_size() {
+        let coarse = level(0, 0.5, 0.25);
+        assert_eq!(rate(MEASURES[0], &coarse, &level(1, 0.25, 0.0625)), Some(2.0));
+        assert_eq!(rate(MEASURES[0], &coarse, &level(1, 0.25, 0.25)), Some(0.0));
+        assert_eq!(rate(MEASURES[5], &coarse, &level(1, 0.25, 0.0625)), None, "zero errors have no rate");
+    }
+
+    #[test]
+    fn the_fitted_rate_is_the_slope_of_a_power_and_the_mean_of_erratic_ones() {
+        let power: Vec<LevelErrors> = [0.5, 0.25, 0.125].iter().map(|&h| level(0, h, 3.0 * h * h)).collect();
+        assert!((fitted_rate(MEASURES[0], &power).unwrap() - 2.0).abs() < 1e-12);
+        let erratic = [level(0, 0.5, 0.5), level(1, 0.25, 0.4), level(2, 0.125, 0.125)];
+        assert!((fitted_rate(MEASURES[0], &erratic).unwrap() - 1.0).abs() < 1e-12);
+        assert_eq!(fitted_rate(MEASURES[0], &power[..1]), None);
+        assert_eq!(fitted_rate(MEASURES[5], &power), None, "zero errors have no rate");
+    }
+
+    #[test]
+    fn the_table_has_a_row_for_each_level_and_the_rates_between_them() {
+        let text = markdown(&[level(0, 0.5, 0.25), level(1, 0.25, 0.0625)]);
+        let lines: Vec<&str> = text.lines().collect();
+        assert_eq!(lines.len(), 5);
+        assert!(lines[2].starts_with("| 10 | 5.00e-1 | 2.50e-1 |  |"));
+        assert!(lines[3].starts_with("| 10 | 2.50e-1 | 6.25e-2 | 2.00 |"));
+        assert!(lines[4].starts_with("| all levels | | | 2.00 |"));
+        let columns: Vec<usize> = lines.iter().map(|line| line.matches('|').count()).collect();
+        assert!(columns.iter().all(|&n| n == columns[0]), "{columns:?}");
+    }
+}
