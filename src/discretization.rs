@@ -136,9 +136,8 @@ impl<'m> Discretization<'m> {
         let [u1, u2] = displacement;
         let [mu1, mu2] = self.tension;
         let gap_tension = mu1 * (mu2 / (mu1 + mu2));
-        let size = |b: usize| {
-            self.tension[i] * displacement[i][b].abs() + gap_tension * (u1[b] - u2[b]).abs()
-        };
+        let size =
+            |b: usize| self.tension[i] * displacement[i][b].abs() + gap_tension * (u1[b] - u2[b]).abs();
         let terms = |a: usize| {
             let row = self.stiffness.outer_view(a).expect("a vertex has a row");
             row.iter().map(|(b, k)| k.abs() * size(b)).sum::<f64>() + self.load[i][a].abs()
@@ -252,7 +251,7 @@ pub enum DiscretizationError {
         source: NotFinite,
     },
     /// The height is negative or not finite at a boundary vertex.
-    #[error("height g is {value} at the boundary vertex {vertex} ({}, {}): it must be finite and >= 0 on the whole boundary", point[0], point[1])]
+    #[error("height g is {value} at the boundary vertex {vertex} ({}, {}): it must be finite and >= 0 on the whole boundary (where a formula is zero up to rounding, write max(0, ...))", point[0], point[1])]
     Height {
         /// The vertex, counted from 0.
         vertex: usize,

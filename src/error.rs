@@ -17,7 +17,9 @@ use crate::mesh::MeshError;
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum MeasureError {
     /// Solution and discretization do not belong together.
-    #[error("the solution has {values} values, the mesh {vertices} vertices: give the discretization that was solved")]
+    #[error(
+        "the solution has {values} values, the mesh {vertices} vertices: give the discretization that was solved"
+    )]
     OtherMesh {
         /// Entries of the solution's vectors.
         values: usize,
@@ -28,10 +30,14 @@ pub enum MeasureError {
     #[error("the triangles cannot be divided for the lift of the action: {0}")]
     SubTriangulation(#[from] MeshError),
     /// The stiffness matrix cannot be factored.
-    #[error("the lift of the action cannot be factored: memory is short, or the mesh has triangles that are too thin")]
+    #[error(
+        "the lift of the action cannot be factored: memory is short, or the mesh has triangles that are too thin"
+    )]
     NotFactored,
     /// The iteration for the lift does not converge.
-    #[error("the lift of the action has not converged in {iterations} iterations: the mesh has triangles that are too thin")]
+    #[error(
+        "the lift of the action has not converged in {iterations} iterations: the mesh has triangles that are too thin"
+    )]
     NotConverged {
         /// The limit.
         iterations: usize,

@@ -1,10 +1,18 @@
 //! Results as files that people open with the tools they have.
 
+mod drawing;
+mod dual;
 mod file;
+mod mesh_picture;
 pub mod picture;
+mod rates_picture;
 mod summary;
+mod vtk;
 mod vtu;
 
+pub use dual::write_dual_vtu;
 pub use file::{WriteSeek, write_atomically};
+pub use mesh_picture::{MeshPicture, MeshPictureError, render_mesh};
+pub use rates_picture::{RatesPicture, RatesPictureError, Series, render_rates};
 pub use summary::{PolishSummary, ResidualSummary, Seconds, Summary};
 pub use vtu::write_vtu;

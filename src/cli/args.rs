@@ -34,7 +34,7 @@ pub(super) enum Command {
     Solve(SolveArguments),
     /// Show every residual, from every backend, with and without polish
     Check(CheckArguments),
-    /// Measure errors and rates on finer and finer meshes, for a built-in case
+    /// Measure errors and rates on finer meshes, for a built-in case
     Converge(ConvergeArguments),
     /// Write the quadratic program of a case for other solvers
     Export(ExportArguments),
@@ -58,6 +58,9 @@ pub(super) struct SolveArguments {
     /// Leave the backend's answer as it is
     #[arg(long)]
     pub(super) no_polish: bool,
+    /// Also write the dual mesh, dual.vtu and mesh.png
+    #[arg(long)]
+    pub(super) dual: bool,
 }
 
 #[derive(Debug, Args)]
@@ -70,13 +73,13 @@ pub(super) struct CheckArguments {
 pub(super) struct ConvergeArguments {
     #[command(flatten)]
     pub(super) case: CaseArguments,
-    /// Number of meshes, each with four times the triangles of the one before
+    /// Number of meshes, each refined once more
     #[arg(long, value_name = "N", default_value_t = 5)]
     pub(super) levels: usize,
     /// Solver, not the case file's: clarabel, osqp, active-set
     #[arg(long, value_name = "NAME")]
     pub(super) backend: Option<BackendName>,
-    /// Folder for the results; levels that are there are kept [default: out/CASE]
+    /// Folder, whose levels are kept [default: out/CASE]
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
 }

@@ -8,6 +8,10 @@ use super::terminal::{grouped, print};
 use super::{Failure, SolverSettings};
 use crate::action::{ContactSolution, Rejected, Residuals, certify};
 use crate::discretization::Discretization;
+use crate::fem::element_loads;
+use crate::flux::{FluxDefects, Reconstruction, Reconstructor};
+use crate::mesh::SubTriangulation;
+use crate::problem::ContactProblem;
 
 /// One backend's result.
 struct Column {
@@ -36,7 +40,12 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<(), Failure> {
             "{}: {unknowns} unknowns, tolerance {:.0e}\n",
             setup.case.title, setup.case.solver.tolerance
         );
-        print(&(title + &table(&columns)))?;
+        let fluxes = match columns.iter().find_map(|column| column.result.as_ref().ok()) {
+            Some(solution) => flux_lines(&setup.case.problem, &d, solution)
+                .map_err(|error| Failure::Input(format!("{}: {error}", setup.name)))?,
+            None => String::new(),
+        };
+        print(&(title + &table(&columns) + &fluxes))?;
     }
     match columns.iter().filter(|column| column.must_certify).find_map(|column| column.result.as_ref().err())
     {
@@ -66,6 +75,34 @@ fn column(
         must_certify: settings.polish,
         result: certify(d, candidate, settings.tolerance),
     })
+}
+
+/// The identities of the reconstructed fluxes `t_ih` of both membranes, for each choice: relative defects.
+fn flux_lines(
+    problem: &ContactProblem,
+    d: &Discretization,
+    solution: &ContactSolution,
+) -> Result<String, Box<dyn std::error::Error>> {
+    let sub = SubTriangulation::new(d.mesh())?;
+    let [f1, f2] = problem.load();
+    let loads = [element_loads(d.mesh(), f1)?, element_loads(d.mesh(), f2)?];
+    let reconstructor = Reconstructor::new(d, &sub, loads);
+    let mut text = format!("\n  {:22}", "fluxes t_ih");
+    for (name, _) in FluxDefects::default().named() {
+        text += &format!(" {name:>11}");
+    }
+    text.push('\n');
+    for kind in Reconstruction::ALL {
+        let flux = reconstructor.reconstruct(solution.displacement(), kind);
+        let defects =
+            FluxDefects::new(&reconstructor, solution.displacement(), solution.lambda(), &flux, kind);
+        text += &format!("  {:22}", kind.name());
+        for (_, defect) in defects.named() {
+            text += &format!(" {defect:>11.1e}");
+        }
+        text.push('\n');
+    }
+    Ok(text)
 }
 
 /// A row for each residual, a column for each result.

@@ -8,10 +8,14 @@ use super::args::ConvergeArguments;
 use super::progress::Progress;
 use super::setup::{Setup, make_folder, options, solver, write_file};
 use super::terminal::{grouped, print};
+use crate::output::{RatesPicture, Series, render_rates};
 use crate::study::{ConvergenceStudy, LevelErrors, MEASURES, StudyError, fitted_rate, markdown, rate};
 
 const LEVELS: &str = "summary.csv";
 const TABLE: &str = "convergence.md";
+const PICTURE: &str = "convergence.png";
+/// The slopes to compare with: those of the theory, and that of a discontinuous action in L2.
+const SLOPES: [f64; 4] = [0.5, 1.0, 1.5, 2.0];
 /// What the levels belong to: a run of another case file, solver or first mesh starts anew.
 const ORIGIN: &str = "converge.toml";
 
@@ -57,6 +61,7 @@ pub(super) fn run(arguments: &ConvergeArguments) -> Result<(), Failure> {
             write_file(&folder.join(TABLE), |out| out.write_all(markdown(&levels).as_bytes()))?;
         }
     }
+    write_picture(&folder, &setup.case.title, &levels)?;
     drop(progress);
     if !arguments.case.quiet {
         print(&table(&setup.case.title, &levels, &folder))?;
@@ -82,23 +87,35 @@ fn write_csv(levels: &[LevelErrors], out: &mut dyn Write) -> io::Result<()> {
     writer.flush()
 }
 
+/// The errors against the mesh size.
+fn write_picture(folder: &Path, title: &str, levels: &[LevelErrors]) -> Result<(), Failure> {
+    let h: Vec<f64> = levels.iter().map(|level| level.h).collect();
+    let values: Vec<Vec<f64>> =
+        MEASURES.iter().map(|measure| levels.iter().map(measure.of).collect()).collect();
+    let series: Vec<Series> =
+        MEASURES.iter().zip(&values).map(|(measure, values)| Series { name: measure.name, values }).collect();
+    let picture = RatesPicture { title, abscissa: "h", h: &h, series: &series, slopes: &SLOPES };
+    let png = render_rates(&picture).map_err(|error| Failure::Input(format!("{PICTURE}: {error}")))?;
+    write_file(&folder.join(PICTURE), |out| out.write_all(&png))
+}
+
 /// The errors with their rates, for the eye.
 fn table(title: &str, levels: &[LevelErrors], folder: &Path) -> String {
     let mut text = format!("{title}\n  vertices");
     for measure in MEASURES {
-        text += &format!(" {:>11}", shortened(measure.name));
+        text += &format!(" {:>10}", shortened(measure.name));
     }
     text.push('\n');
     for (k, level) in levels.iter().enumerate() {
         text += &format!("{:>10}", grouped(level.vertices));
         for measure in MEASURES {
-            text += &format!(" {:>11.2e}", (measure.of)(level));
+            text += &format!(" {:>10.2e}", (measure.of)(level));
         }
         text.push('\n');
         if k > 0 {
             text += &format!("{:>10}", "rate");
             for measure in MEASURES {
-                text += &format!(" {:>11}", rate_text(rate(measure, &levels[k - 1], level)));
+                text += &format!(" {:>10}", rate_text(rate(measure, &levels[k - 1], level)));
             }
             text.push('\n');
         }
@@ -106,11 +123,11 @@ fn table(title: &str, levels: &[LevelErrors], folder: &Path) -> String {
     if levels.len() > 2 {
         text += &format!("{:>10}", "all levels");
         for measure in MEASURES {
-            text += &format!(" {:>11}", rate_text(fitted_rate(measure, levels)));
+            text += &format!(" {:>10}", rate_text(fitted_rate(measure, levels)));
         }
         text.push('\n');
     }
-    text + &format!("  files: {}/{{{LEVELS}, {TABLE}}}\n", folder.display())
+    text + &format!("  files: {}/{{{LEVELS}, {TABLE}, {PICTURE}}}\n", folder.display())
 }
 
 fn rate_text(rate: Option<f64>) -> String {
@@ -119,5 +136,5 @@ fn rate_text(rate: Option<f64>) -> String {
 
 /// A heading that fits into a column.
 fn shortened(name: &str) -> String {
-    name.replace("lambda in ", "lambda ").replace("contact area", "area")
+    name.replace("lambda in ", "lambda ").replace("H^-1", "H-1").replace("contact area", "area")
 }

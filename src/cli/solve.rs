@@ -10,14 +10,18 @@ use super::setup::{Setup, make_folder, options, solver, write_file};
 use super::terminal::{fields, grouped, print};
 use crate::action::{ContactSolution, certify};
 use crate::discretization::Discretization;
+use crate::mesh::{DualMesh, SubTriangulation};
 use crate::output::picture::{Picture, render};
-use crate::output::{Seconds, Summary, write_vtu};
+use crate::output::{MeshPicture, Seconds, Summary, render_mesh, write_dual_vtu, write_vtu};
 use crate::solver::PolishReport;
 
 /// The files that hold a solution: present only when it is certified.
 const SOLUTION: &str = "solution.vtu";
 const PICTURE: &str = "membranes.png";
 const SUMMARY: &str = "summary.json";
+/// What `--dual` adds.
+const DUAL: &str = "dual.vtu";
+const MESH_PICTURE: &str = "mesh.png";
 
 pub(super) fn run(arguments: &SolveArguments) -> Result<(), Failure> {
     let progress = Progress::new(arguments.case.quiet);
@@ -45,6 +49,9 @@ pub(super) fn run(arguments: &SolveArguments) -> Result<(), Failure> {
             progress.stage("writing the results");
             let start = Instant::now();
             write_solution(&folder, title, &d, &solution)?;
+            if arguments.dual {
+                write_dual(&folder, title, &d, &solution)?;
+            }
             let seconds = Seconds { output: start.elapsed().as_secs_f64(), ..seconds };
             let summary = Summary::new(title, &d, settings.tolerance, Ok(&solution), seconds);
             write_file(&folder.join(SUMMARY), |out| summary.write(out))?;
@@ -56,7 +63,7 @@ pub(super) fn run(arguments: &SolveArguments) -> Result<(), Failure> {
         }
         Err(rejected) => {
             // What an earlier run left is not the solution of this one.
-            for name in [SOLUTION, PICTURE] {
+            for name in [SOLUTION, PICTURE, DUAL, MESH_PICTURE] {
                 let _ = std::fs::remove_file(folder.join(name));
             }
             let summary = Summary::new(title, &d, settings.tolerance, Err(&rejected), seconds);
@@ -99,6 +106,22 @@ fn write_solution(
     };
     let png = render(&picture).map_err(|error| Failure::Input(format!("{PICTURE}: {error}")))?;
     write_file(&folder.join(PICTURE), |out| out.write_all(&png))
+}
+
+/// The dual mesh `D_h`, with the action as the piecewise constant that it is, and as Figure 1 of the paper.
+fn write_dual(
+    folder: &Path,
+    title: &str,
+    d: &Discretization,
+    solution: &ContactSolution,
+) -> Result<(), Failure> {
+    let mesh = d.mesh();
+    let sub = SubTriangulation::new(mesh).map_err(|error| Failure::Input(format!("{DUAL}: {error}")))?;
+    let dual = DualMesh::new(mesh, &sub);
+    write_file(&folder.join(DUAL), |out| write_dual_vtu(&dual, solution, out))?;
+    let picture = MeshPicture { title, mesh, dual: &dual, contact: Some(solution.contact()) };
+    let png = render_mesh(&picture).map_err(|error| Failure::Input(format!("{MESH_PICTURE}: {error}")))?;
+    write_file(&folder.join(MESH_PICTURE), |out| out.write_all(&png))
 }
 
 /// The summary for the eye.

@@ -3,21 +3,17 @@
 //! Three parts share their colours and the line A–A: an oblique view with membrane 1 cut open along A–A, a map
 //! of lambda on the dual cells `D_a` of the contact region, and the section A–A.
 
-mod axis;
-mod canvas;
-mod color;
-mod frame;
 mod layer;
 mod map;
-mod raster;
 mod scene;
 mod section;
 mod section_plot;
 mod surfaces;
 mod view;
 
-use canvas::{Anchor, Canvas, FINE};
-use color::INK;
+use super::drawing::heading::heading;
+use super::drawing::{axis, canvas, color, frame, outline, raster};
+use canvas::{Canvas, FINE};
 use frame::Frame;
 use map::Map;
 use scene::Scene;
@@ -111,35 +107,7 @@ pub fn render(picture: &Picture) -> Result<Vec<u8>, PictureError> {
     surfaces::draw(&mut canvas, &scene, &section, VIEW);
     map.draw(&mut canvas, &scene, &cut);
     SectionPlot::new(&scene, &section, [MEMBRANES, FORCE]).draw(&mut canvas);
-    canvas.encode()
-}
-
-/// The title in large letters, or smaller on two lines, ended by an ellipsis if it is longer still.
-fn heading(canvas: &mut Canvas, title: &str) {
-    const LARGE: f64 = 42.0;
-    const SMALLER: f64 = 32.0;
-    const MARGIN: f64 = 40.0;
-    let room = SIZE[0] as f64 - 2.0 * MARGIN;
-    let title: String = title.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
-    if canvas.width(&title, LARGE) <= room {
-        return canvas.text(&title, [MARGIN, 52.0], LARGE, INK, Anchor::Left);
-    }
-    let letters: Vec<char> = title.chars().collect();
-    let fitting = |canvas: &Canvas, letters: &[char]| {
-        let fits =
-            |count: &usize| canvas.width(&letters[..*count].iter().collect::<String>(), SMALLER) <= room;
-        (0..=letters.len()).rev().find(fits).unwrap_or(0)
-    };
-    let whole = fitting(canvas, &letters);
-    let split = letters[..whole].iter().rposition(|&c| c == ' ').map_or(whole, |space| space + 1);
-    let (first, rest) = letters.split_at(split);
-    canvas.text(&first.iter().collect::<String>(), [MARGIN, 36.0], SMALLER, INK, Anchor::Left);
-    let mut second: String = rest.iter().collect();
-    if canvas.width(&second, SMALLER) > room {
-        let kept = fitting(canvas, rest).saturating_sub(2);
-        second = rest[..kept].iter().collect::<String>() + "…";
-    }
-    canvas.text(&second, [MARGIN, 76.0], SMALLER, INK, Anchor::Left);
+    Ok(canvas.encode()?)
 }
 
 #[cfg(test)]

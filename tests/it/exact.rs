@@ -145,7 +145,7 @@ fn everywhere_biactive_does_not_cycle() {
 fn curved_free_boundaries_are_found_to_the_order_of_the_mesh_size() {
     for (case, parameters) in [(Case::Circle, [("R", 0.3)].as_slice()), (Case::Annulus, &[])] {
         let exact = exact(case, parameters);
-        let errors = [16, 32].map(|cells| {
+        let errors = [16, 64].map(|cells| {
             let mesh = unit_square(cells);
             let errors: Vec<f64> = solutions(&exact, &mesh)
                 .iter()
@@ -153,7 +153,8 @@ fn curved_free_boundaries_are_found_to_the_order_of_the_mesh_size() {
                 .collect();
             errors.into_iter().fold(0.0, f64::max)
         });
-        assert!(errors[1] < 0.4 * errors[0], "{case}: second order, nearly: {errors:?}");
+        // Of second order, but for where the curve passes among the vertices: better than 4^(-3/2) at a quarter of h.
+        assert!(errors[1] < 0.125 * errors[0], "{case}: {errors:?}");
     }
 }
 

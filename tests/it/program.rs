@@ -111,7 +111,7 @@ fn lines_too_long(text: &str) -> Vec<&str> {
 fn help_names_every_command_and_fits_the_terminal() {
     let folder = tempdir().unwrap();
     let help = run(folder.path(), "--help").success();
-    for command in ["solve", "check", "export", "cases"] {
+    for command in ["solve", "check", "converge", "export", "cases"] {
         assert!(help.contains(&format!("\n  {command} ")), "{command}: {help}");
         let of_command = run(folder.path(), &format!("{command} --help")).success();
         assert!(of_command.contains(&format!("Usage: membranes {command}")), "{of_command}");
@@ -325,6 +325,52 @@ fn check_shows_every_backend_side_by_side_and_writes_nothing() {
     }
     assert_eq!(row("certified")[1], "yes", "polished, the first backend is certified");
     assert_eq!(files(folder.path()), ["plates.toml"]);
+}
+
+#[test]
+fn the_dual_mesh_is_written_when_asked_for() {
+    let folder = folder_with(CASE);
+    run(folder.path(), "solve plates.toml --out results --dual --quiet").success();
+    let mut expected = RESULTS.to_vec();
+    expected.extend(["dual.vtu", "mesh.png"]);
+    expected.sort_unstable();
+    assert_eq!(files(&folder.path().join("results")), expected);
+}
+
+/// A case with a known solution, small.
+const KNOWN: &str = "case = \"strip\"\n\n[mesh]\ncells = 4\n\n[solver]\nbackend = \"active-set\"\n";
+
+#[test]
+fn converge_goes_on_from_the_levels_that_are_there() {
+    let folder = folder_with(KNOWN);
+    let levels = |text: &str| text.lines().skip(1).map(str::to_owned).collect::<Vec<_>>();
+    let converge = |count: usize| {
+        let arguments = format!("converge plates.toml --levels {count} --out results");
+        let table = run(folder.path(), &arguments).success();
+        assert_eq!(lines_too_long(&table), [""; 0]);
+        levels(&fs::read_to_string(folder.path().join("results/summary.csv")).expect("it is there"))
+    };
+    let first = converge(2);
+    let more = converge(3);
+    assert_eq!((first.len(), more.len()), (2, 3));
+    // The seconds in the rows tell that the first levels were kept, not computed again.
+    assert_eq!(more[..2], first);
+    let expected = ["converge.toml", "convergence.md", "convergence.png", "summary.csv"];
+    assert_eq!(files(&folder.path().join("results")), expected);
+
+    fs::write(folder.path().join("plates.toml"), KNOWN.replace("cells = 4", "cells = 5")).expect("writable");
+    let other = converge(2);
+    assert_eq!(other.len(), 2, "another case starts anew");
+    assert_ne!(other[0], first[0]);
+}
+
+#[test]
+fn converge_needs_a_known_solution() {
+    let folder = folder_with(CASE);
+    let refused = run(folder.path(), "converge plates.toml --out results");
+    assert_eq!(refused.code, Some(2));
+    assert!(refused.stderr.contains("case = "), "{}", refused.stderr);
+    assert!(!folder.path().join("results").exists());
 }
 
 #[test]

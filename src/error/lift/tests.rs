@@ -184,8 +184,7 @@ fn of_an_action_that_jumps_the_mesh_itself_sees_three_quarters() {
 fn the_change_of_the_quadrature_bounds_the_change_of_the_figure() {
     with_solution(Case::Circle, 8, |d, sub, exact, solution| {
         let rho = |t: usize, [x, y]: [f64; 2]| exact.lambda(x, y) - solution.lambda()[sub.vertex_of(t)];
-        let [coarse, fine] =
-            [2, 5].map(|depth| dual_norm(d, sub, &cut_rule(exact, depth), 1, rho).unwrap());
+        let [coarse, fine] = [2, 5].map(|depth| dual_norm(d, sub, &cut_rule(exact, depth), 1, rho).unwrap());
         let unresolved = dual_norm(d, sub, &plain(), 1, rho).unwrap();
         let change = (coarse.value - fine.value).abs();
         assert!(change < coarse.quadrature && fine.quadrature < coarse.quadrature / 8.0);

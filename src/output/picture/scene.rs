@@ -1,6 +1,7 @@
 //! The checked data of a picture, with one axis per quantity.
 
 use super::axis::Axis;
+use super::outline::boundary_edges;
 use super::{Picture, PictureError};
 
 /// Above this the difference of two numbers may overflow.
@@ -129,12 +130,4 @@ fn check_finite(
         Some(&vertex) => Err(PictureError::Value { name, vertex, value: value(vertex), limit: LARGEST }),
         None => Ok(()),
     }
-}
-
-/// The edges that belong to one triangle only, in a fixed order.
-fn boundary_edges(triangles: &[[usize; 3]]) -> Vec<[usize; 2]> {
-    let ends = |&[a, b, c]: &[usize; 3]| [[a, b], [b, c], [c, a]].map(|[p, q]| [p.min(q), p.max(q)]);
-    let mut edges: Vec<[usize; 2]> = triangles.iter().flat_map(ends).collect();
-    edges.sort_unstable();
-    edges.chunk_by(|a, b| a == b).filter(|same| same.len() == 1).map(|same| same[0]).collect()
 }

@@ -1,35 +1,11 @@
 use super::axis::Axis;
 use super::canvas::{Anchor, Canvas, FINE};
-use super::color::{self, INK, Rgb};
+use super::color::{self, INK};
 use super::*;
+use crate::output::drawing::samples::Image;
 
 /// Rounding of a handful of operations on numbers of order one.
 const ROUNDING: f64 = 1e-12;
-
-/// The pixels of a decoded picture.
-struct Image {
-    width: usize,
-    height: usize,
-    pixels: Vec<Rgb>,
-}
-
-impl Image {
-    fn decode(bytes: &[u8]) -> Image {
-        let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().expect("a PNG header");
-        let mut data = vec![0; reader.output_buffer_size().expect("a size that fits into memory")];
-        let info = reader.next_frame(&mut data).expect("PNG data");
-        let pixels = data.chunks_exact(3).map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
-        Image { width: info.width as usize, height: info.height as usize, pixels }
-    }
-
-    fn at(&self, [x, y]: [f64; 2]) -> Rgb {
-        self.pixels[y as usize * self.width + x as usize]
-    }
-
-    fn count(&self, color: Rgb) -> usize {
-        self.pixels.iter().filter(|&&pixel| pixel == color).count()
-    }
-}
 
 /// A mesh with a solution.
 #[derive(Clone)]

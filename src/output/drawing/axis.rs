@@ -8,7 +8,7 @@ const FLAT: f64 = 1e-12;
 
 /// The range of a quantity, in units of a power of ten chosen so that tick labels stay short.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Axis {
+pub(crate) struct Axis {
     low: f64,
     high: f64,
     exponent: i32,
@@ -17,14 +17,22 @@ pub(super) struct Axis {
 
 /// A tick: its place on the axis (0 at the low end, 1 at the high end) and its label.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Tick {
-    pub(super) place: f64,
-    pub(super) label: String,
+pub(crate) struct Tick {
+    pub(crate) place: f64,
+    pub(crate) label: String,
+}
+
+impl Tick {
+    /// Whether the tick lies between the ends of its axis.
+    pub(crate) fn is_on_axis(&self) -> bool {
+        const NEARLY: f64 = 1e-9;
+        (-NEARLY..=1.0 + NEARLY).contains(&self.place)
+    }
 }
 
 impl Axis {
     /// The axis from `low` to `high`; a range without extent is widened so that it can be drawn.
-    pub(super) fn new(low: f64, high: f64) -> Axis {
+    pub(crate) fn new(low: f64, high: f64) -> Axis {
         let magnitude = low.abs().max(high.abs());
         if magnitude < SMALLEST {
             return Axis { low: 0.0, high: 1.0, exponent: 0, unit: 1.0 };
@@ -42,40 +50,40 @@ impl Axis {
     }
 
     /// The axis over all `values`, zero included if `from_zero`.
-    pub(super) fn over(values: impl Iterator<Item = f64>, from_zero: bool) -> Axis {
+    pub(crate) fn over(values: impl Iterator<Item = f64>, from_zero: bool) -> Axis {
         let start = if from_zero { (0.0, 0.0) } else { (f64::INFINITY, f64::NEG_INFINITY) };
         let (low, high) = values.fold(start, |(low, high), value| (low.min(value), high.max(value)));
         if low <= high { Axis::new(low, high) } else { Axis::new(0.0, 0.0) }
     }
 
     /// The same axis with these parts of its length added below and above.
-    pub(super) fn widened(self, [below, above]: [f64; 2]) -> Axis {
+    pub(crate) fn widened(self, [below, above]: [f64; 2]) -> Axis {
         let length = self.high - self.low;
         Axis { low: self.low - below * length, high: self.high + above * length, ..self }
     }
 
     /// Where `value` lies: 0 at the low end, 1 at the high end.
-    pub(super) fn place(&self, value: f64) -> f64 {
+    pub(crate) fn place(&self, value: f64) -> f64 {
         (value / self.unit - self.low) / (self.high - self.low)
     }
 
     /// The length of the axis, in the unit of the data.
-    pub(super) fn length(&self) -> f64 {
+    pub(crate) fn length(&self) -> f64 {
         (self.high - self.low) * self.unit
     }
 
     /// The power of ten as a suffix of the axis title, empty for 1.
-    pub(super) fn suffix(&self) -> String {
+    pub(crate) fn suffix(&self) -> String {
         if self.exponent == 0 { String::new() } else { format!("  ({})", self.power()) }
     }
 
     /// The power of ten that the labels are to be multiplied by, empty for 1.
-    pub(super) fn power(&self) -> String {
+    pub(crate) fn power(&self) -> String {
         if self.exponent == 0 { String::new() } else { format!("×10{}", superscript(self.exponent)) }
     }
 
     /// Round ticks, about `count` of them.
-    pub(super) fn ticks(&self, count: usize) -> Vec<Tick> {
+    pub(crate) fn ticks(&self, count: usize) -> Vec<Tick> {
         let step = round_step((self.high - self.low) / count.max(1) as f64);
         let nearly = 1e-6;
         let first = (self.low / step - nearly).ceil() as i64;
@@ -88,7 +96,7 @@ impl Axis {
     }
 
     /// The round number next to the place `place`, to a hundredth of the length: its place and its label.
-    pub(super) fn round(&self, place: f64) -> Tick {
+    pub(crate) fn round(&self, place: f64) -> Tick {
         let step = round_step((self.high - self.low) / 100.0);
         let value = ((self.low + place * (self.high - self.low)) / step).round() * step;
         let place = (value - self.low) / (self.high - self.low);
@@ -127,7 +135,8 @@ fn number(value: f64, step: f64) -> String {
     format!("{value:.decimals$}").replace('-', "−")
 }
 
-fn superscript(exponent: i32) -> String {
+/// An integer in raised digits.
+pub(crate) fn superscript(exponent: i32) -> String {
     let raise = |c: char| match c {
         '-' => '⁻',
         '1' => '¹',

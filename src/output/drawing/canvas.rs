@@ -2,12 +2,11 @@
 
 use ab_glyph::{Font, FontRef, Glyph, PxScale, ScaleFont, point};
 
-use super::PictureError;
 use super::color::{PAPER, Rgb, mix};
 use super::raster;
 
 /// Fine pixels per pixel and direction: smooth edges without any blending of lines.
-pub(super) const FINE: usize = 3;
+pub(crate) const FINE: usize = 3;
 
 /// DejaVu Sans: Latin, Greek, Cyrillic, Arabic, Hebrew, sub- and superscripts.
 static FONT: &[u8] = include_bytes!("../../../assets/DejaVuSans.ttf");
@@ -17,7 +16,7 @@ const CAPITALS: f64 = 0.626;
 
 /// Which part of a text lies at the given point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Anchor {
+pub(crate) enum Anchor {
     /// The left end.
     Left,
     /// The middle.
@@ -27,7 +26,7 @@ pub(super) enum Anchor {
 }
 
 /// A picture in the making; all lengths are in pixels of the finished picture, y downwards.
-pub(super) struct Canvas {
+pub(crate) struct Canvas {
     size: [usize; 2],
     pixels: Vec<Rgb>,
     font: FontRef<'static>,
@@ -35,14 +34,19 @@ pub(super) struct Canvas {
 
 impl Canvas {
     /// White paper of `size` pixels.
-    pub(super) fn new(size: [usize; 2]) -> Canvas {
+    pub(crate) fn new(size: [usize; 2]) -> Canvas {
         let font = FontRef::try_from_slice(FONT).expect("the font in assets/ is a valid font file");
         let size = size.map(|length| length * FINE);
         Canvas { size, pixels: vec![PAPER; size[0] * size[1]], font }
     }
 
+    /// Width and height in pixels.
+    pub(crate) fn size(&self) -> [f64; 2] {
+        self.size.map(|length| (length / FINE) as f64)
+    }
+
     /// Paints the fine pixel (`column`, `row`), if it exists.
-    pub(super) fn blend(&mut self, column: usize, row: usize, color: Rgb, share: f64) {
+    pub(crate) fn blend(&mut self, column: usize, row: usize, color: Rgb, share: f64) {
         if column < self.size[0] && row < self.size[1] {
             let pixel = &mut self.pixels[row * self.size[0] + column];
             *pixel = mix(*pixel, color, share);
@@ -50,7 +54,7 @@ impl Canvas {
     }
 
     /// A straight line with round ends.
-    pub(super) fn line(&mut self, ends: [[f64; 2]; 2], width: f64, color: Rgb) {
+    pub(crate) fn line(&mut self, ends: [[f64; 2]; 2], width: f64, color: Rgb) {
         let fine = FINE as f64;
         let (size, pixels) = (self.size, &mut self.pixels);
         raster::line(ends.map(|p| p.map(|x| x * fine)), width * fine / 2.0, size, |column, row, _| {
@@ -59,7 +63,7 @@ impl Canvas {
     }
 
     /// A dashed straight line.
-    pub(super) fn dashed(&mut self, [from, to]: [[f64; 2]; 2], width: f64, color: Rgb) {
+    pub(crate) fn dashed(&mut self, [from, to]: [[f64; 2]; 2], width: f64, color: Rgb) {
         const DASH: f64 = 12.0;
         const PERIOD: f64 = 20.0;
         let length = (to[0] - from[0]).hypot(to[1] - from[1]);
@@ -71,7 +75,7 @@ impl Canvas {
     }
 
     /// The filled rectangle between two corners.
-    pub(super) fn fill(&mut self, [low, high]: [[f64; 2]; 2], color: Rgb) {
+    pub(crate) fn fill(&mut self, [low, high]: [[f64; 2]; 2], color: Rgb) {
         let [left, top] = low.map(|x| (x * FINE as f64).round().max(0.0) as usize);
         let [right, bottom] = high.map(|x| (x * FINE as f64).round().max(0.0) as usize);
         for row in top..bottom.min(self.size[1]) {
@@ -81,13 +85,29 @@ impl Canvas {
         }
     }
 
+    /// A filled triangle.
+    pub(crate) fn triangle(&mut self, corners: [[f64; 2]; 3], color: Rgb) {
+        let (size, pixels) = (self.size, &mut self.pixels);
+        raster::triangle(corners.map(|p| p.map(|x| x * FINE as f64)), size, |column, row, _| {
+            pixels[row * size[0] + column] = color;
+        });
+    }
+
+    /// Copies another canvas onto this one, its upper left corner to the pixel `[left, top]`; it must fit.
+    pub(crate) fn paste(&mut self, other: &Canvas, [left, top]: [usize; 2]) {
+        for (row, pixels) in other.pixels.chunks_exact(other.size[0]).enumerate() {
+            let start = (top * FINE + row) * self.size[0] + left * FINE;
+            self.pixels[start..start + other.size[0]].copy_from_slice(pixels);
+        }
+    }
+
     /// A filled disc.
-    pub(super) fn dot(&mut self, centre: [f64; 2], radius: f64, color: Rgb) {
+    pub(crate) fn dot(&mut self, centre: [f64; 2], radius: f64, color: Rgb) {
         self.line([centre, centre], 2.0 * radius, color);
     }
 
     /// One line of text, its capitals centred on the height of `at`; `size` is the height of a line.
-    pub(super) fn text(&mut self, text: &str, at: [f64; 2], size: f64, color: Rgb, anchor: Anchor) {
+    pub(crate) fn text(&mut self, text: &str, at: [f64; 2], size: f64, color: Rgb, anchor: Anchor) {
         let fine = FINE as f64;
         let (glyphs, width) = self.set(text, size * fine);
         let left = match anchor {
@@ -111,8 +131,14 @@ impl Canvas {
     }
 
     /// The width of a text.
-    pub(super) fn width(&self, text: &str, size: f64) -> f64 {
+    pub(crate) fn width(&self, text: &str, size: f64) -> f64 {
         self.set(text, size).1
+    }
+
+    /// How many of the first letters fit into `room`.
+    pub(crate) fn fitting(&self, letters: &[char], size: f64, room: f64) -> usize {
+        let fits = |count: &usize| self.width(&letters[..*count].iter().collect::<String>(), size) <= room;
+        (0..=letters.len()).rev().find(fits).unwrap_or(0)
     }
 
     /// The glyphs of a text side by side from 0, and their total width.
@@ -131,7 +157,7 @@ impl Canvas {
     }
 
     /// The picture as PNG (RGB, 8 bits).
-    pub(super) fn encode(&self) -> Result<Vec<u8>, PictureError> {
+    pub(crate) fn encode(&self) -> Result<Vec<u8>, png::EncodingError> {
         let [width, height] = self.size.map(|length| length / FINE);
         let mut bytes = Vec::new();
         let mut encoder = png::Encoder::new(&mut bytes, width as u32, height as u32);

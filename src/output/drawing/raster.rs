@@ -5,7 +5,7 @@ const ON_EDGE: f64 = -1e-9;
 
 /// Calls `paint(column, row, barycentric coordinates)` for each pixel of a grid of `size` columns and rows
 /// whose centre lies in the triangle. A triangle without area has no pixels.
-pub(super) fn triangle(
+pub(crate) fn triangle(
     corners: [[f64; 2]; 3],
     size: [usize; 2],
     mut paint: impl FnMut(usize, usize, [f64; 3]),
@@ -31,7 +31,7 @@ pub(super) fn triangle(
 }
 
 /// Calls `paint(column, row, place along the line from 0 to 1)` for each pixel within `radius` of the line.
-pub(super) fn line(
+pub(crate) fn line(
     [from, to]: [[f64; 2]; 2],
     radius: f64,
     size: [usize; 2],
@@ -56,7 +56,7 @@ pub(super) fn line(
 }
 
 /// The gradients of the three barycentric coordinates, `None` for a triangle without area.
-pub(super) fn barycentric_gradients(corners: [[f64; 2]; 3]) -> Option<[[f64; 2]; 3]> {
+pub(crate) fn barycentric_gradients(corners: [[f64; 2]; 3]) -> Option<[[f64; 2]; 3]> {
     let [a, b, c] = corners;
     let twice_area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
     if !twice_area.is_normal() {
@@ -68,7 +68,7 @@ pub(super) fn barycentric_gradients(corners: [[f64; 2]; 3]) -> Option<[[f64; 2];
 }
 
 /// The corner whose dual cell `D_a` holds the point with these barycentric coordinates.
-pub(super) fn nearest_corner(weights: [f64; 3]) -> usize {
+pub(crate) fn nearest_corner(weights: [f64; 3]) -> usize {
     let second = if weights[1] > weights[0] { 1 } else { 0 };
     if weights[2] > weights[second] { 2 } else { second }
 }

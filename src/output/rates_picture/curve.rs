@@ -1,0 +1,49 @@
+//! The logarithms of one series.
+
+/// Abscissae whose decimal logarithms differ by less give no slope.
+const SAME: f64 = 1e-9;
+
+/// A series in decimal logarithms; `None` where there is none.
+pub(super) struct Curve(Vec<Option<[f64; 2]>>);
+
+impl Curve {
+    /// The curve of `values` over `h`.
+    pub(super) fn new(h: &[f64], values: &[f64]) -> Curve {
+        let logarithm = |value: f64| (value > 0.0 && value.is_finite()).then(|| value.log10());
+        Curve(h.iter().zip(values).map(|(&h, &value)| Some([logarithm(h)?, logarithm(value)?])).collect())
+    }
+
+    /// The points that can be drawn.
+    pub(super) fn points(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
+        self.0.iter().flatten().copied()
+    }
+
+    /// Neighbouring levels that can both be drawn.
+    pub(super) fn segments(&self) -> impl DoubleEndedIterator<Item = [[f64; 2]; 2]> + '_ {
+        self.0.windows(2).filter_map(|pair| Some([pair[0]?, pair[1]?]))
+    }
+
+    /// The slope of the last segment.
+    pub(super) fn last_slope(&self) -> Option<f64> {
+        let [from, to] = self.segments().next_back()?;
+        let run = to[0] - from[0];
+        (run.abs() > SAME).then(|| (to[1] - from[1]) / run)
+    }
+
+    /// The rightmost point.
+    pub(super) fn end(&self) -> Option<[f64; 2]> {
+        self.points().max_by(|p, q| p[0].total_cmp(&q[0]))
+    }
+
+    /// The lowest place of the curve between two abscissae, infinite if it does not reach there.
+    pub(super) fn lowest_between(&self, [left, right]: [f64; 2]) -> f64 {
+        const STEPS: usize = 32;
+        let sample = |[p, q]: [[f64; 2]; 2], step: usize| {
+            let along = step as f64 / STEPS as f64;
+            [0, 1].map(|axis| p[axis] + along * (q[axis] - p[axis]))
+        };
+        let on_segments = self.segments().flat_map(|ends| (0..=STEPS).map(move |step| sample(ends, step)));
+        let near = self.points().chain(on_segments).filter(|p| (left..=right).contains(&p[0]));
+        near.map(|p| p[1]).fold(f64::INFINITY, f64::min)
+    }
+}

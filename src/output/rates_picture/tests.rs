@@ -1,0 +1,211 @@
+use super::labels::spread;
+use super::slopes::fraction;
+use super::*;
+use crate::output::drawing::color;
+use crate::output::drawing::samples::Image;
+
+/// Rounding of a handful of operations on numbers of order one to a thousand.
+const ROUNDING: f64 = 1e-9;
+
+const H: [f64; 5] = [0.2, 0.1, 0.05, 0.025, 0.0125];
+
+fn power(factor: f64, slope: f64) -> [f64; 5] {
+    H.map(|h| factor * h.powf(slope))
+}
+
+fn render(h: &[f64], series: &[&[f64]], slopes: &[f64]) -> Vec<u8> {
+    let series: Vec<Series> = series.iter().map(|values| Series { name: "error", values }).collect();
+    render_rates(&RatesPicture { title: "", abscissa: "h", h, series: &series, slopes }).unwrap()
+}
+
+fn image(h: &[f64], series: &[&[f64]], slopes: &[f64]) -> Image {
+    Image::decode(&render(h, series, slopes))
+}
+
+/// The curves of a picture and its plot; the labels leave 1300 pixels.
+fn plot(series: &[&[f64]], slopes: &[f64]) -> (Vec<Curve>, Plot) {
+    let curves: Vec<Curve> = series.iter().map(|values| Curve::new(&H, values)).collect();
+    let plot = Plot::new(&curves, slopes, 1300.0);
+    (curves, plot)
+}
+
+#[test]
+fn the_picture_has_its_size_and_the_same_bytes_for_the_same_data() {
+    let [first, second] = [power(1.0, 1.0), power(1.0, 2.0)];
+    let bytes = render(&H, &[&first, &second], &[1.0, 2.0]);
+    let picture = Image::decode(&bytes);
+    assert_eq!([picture.width, picture.height], SIZE);
+    assert_eq!(bytes, render(&H, &[&first, &second], &[1.0, 2.0]));
+    assert_ne!(bytes, render(&H, &[&first, &first], &[1.0, 2.0]));
+    assert_ne!(bytes, render(&H, &[&first, &second], &[1.0]));
+}
+
+#[test]
+fn markers_lie_at_the_logarithms_of_the_values() {
+    let values = power(3.0, 1.5);
+    let series = [Series { name: "error", values: &values }];
+    let curves = [Curve::new(&H, &values)];
+    let labels = Labels::new(&Canvas::new(SIZE), &series, &curves);
+    let plot = Plot::new(&curves, &[], labels.left());
+    let picture = image(&H, &[&values], &[]);
+    for (h, value) in H.iter().zip(values) {
+        let at = |value: f64| plot.at([h.log10(), value.log10()]);
+        assert_eq!(picture.at(at(value)), CURVES[0]);
+        assert_ne!(picture.at(at(1.5 * value)), CURVES[0]);
+    }
+}
+
+#[test]
+fn the_last_slope_is_that_of_the_last_two_levels_that_can_be_drawn() {
+    let slope = |values: &[f64]| Curve::new(&H, values).last_slope();
+    let bent = [1.0, 0.5, 0.25, 0.125, 0.125 * 2f64.powf(-1.5)];
+    assert!((slope(&bent).unwrap() - 1.5).abs() < ROUNDING);
+    assert!((slope(&bent).unwrap() - 1.0).abs() > ROUNDING, "and not of the first ones");
+    assert!((slope(&[1.0, 0.5, 0.25, f64::NAN, 0.1]).unwrap() - 1.0).abs() < ROUNDING);
+    assert_eq!(slope(&[1.0, 0.0, 0.25, f64::INFINITY, 0.1]), None, "no two neighbours");
+    assert_eq!(Curve::new(&[0.1, 0.1], &[1.0, 2.0]).last_slope(), None, "the same mesh twice");
+    let vertices = H.map(|h| h.powi(-2));
+    assert!((Curve::new(&vertices, &power(1.0, 1.0)).last_slope().unwrap() + 0.5).abs() < ROUNDING);
+}
+
+#[test]
+fn what_has_no_logarithm_is_left_out() {
+    let holes = [1.0, 0.0, -1.0, f64::NAN, f64::INFINITY];
+    assert_eq!(Curve::new(&H, &holes).points().count(), 1);
+    assert_eq!(Curve::new(&[0.0, -1.0, f64::NAN, 0.1], &[1.0; 4]).points().count(), 1);
+    assert_eq!(Curve::new(&H, &[5e-324; 5]).points().count(), 5);
+    let [some, only] = [image(&H, &[&holes], &[]), image(&H, &[&[1.0, 0.5, 0.3, 0.2, 0.1]], &[])];
+    assert!(some.count(CURVES[0]) > 500, "one marker in the plot, one in the label");
+    assert!(only.count(CURVES[0]) > 2 * some.count(CURVES[0]));
+}
+
+#[test]
+fn limiting_data_can_be_drawn() {
+    let rounding = [1.0, 1.0 + 1e-16, 1.0 - 1e-16, 1.0, 1.0];
+    let cases: [(&[f64], &[&[f64]]); 7] = [
+        (&[], &[]),
+        (&H, &[]),
+        (&[], &[&[], &[]]),
+        (&[0.1], &[&[0.5], &[0.25]]),
+        (&H, &[&rounding]),
+        (&H, &[&[f64::NAN; 5], &[0.0; 5]]),
+        (&[1e300, 1.0, 1e-300], &[&[1e300, 1.0, 1e-300], &[5e-324, 1.0, f64::MAX]]),
+    ];
+    for (h, series) in cases {
+        for slopes in [&[][..], &[1.0, 0.5, f64::NAN, 1e9, -1e300, 0.0, f64::INFINITY]] {
+            let picture = image(h, series, slopes);
+            assert!(picture.count(color::INK) > 200, "frame and labels are there for {h:?}");
+        }
+    }
+    let nothing = image(&[], &[], &[]);
+    assert_eq!(nothing.count(CURVES[0]), 0);
+    assert!(image(&[0.1], &[&[0.5]], &[]).count(CURVES[0]) > 500);
+}
+
+#[test]
+fn many_series_of_long_names_stay_on_the_picture() {
+    let values = power(1.0, 1.0);
+    let name = "error in a norm of a very long name, \n".repeat(20);
+    let series = vec![Series { name: &name, values: &values }; 60];
+    let picture = RatesPicture { title: &name, abscissa: "h", h: &H, series: &series, slopes: &[1.0] };
+    let picture = Image::decode(&render_rates(&picture).unwrap());
+    let [margin, plot] = [1770..1800, 900..930].map(|columns| {
+        let rows = 100..picture.height;
+        let inked = rows.flat_map(|y| columns.clone().map(move |x| [x as f64, y as f64]));
+        inked.filter(|&at| picture.at(at) != color::PAPER).count()
+    });
+    assert_eq!(margin, 0);
+    assert!(plot > 0);
+}
+
+#[test]
+fn slopes_lie_below_the_curves_and_inside_of_the_plot() {
+    let [flat, steep] = [power(1.0, 0.1), power(0.3, 2.0)];
+    for slopes in [&[0.5, 1.0, 2.0][..], &[3.0], &[-1.0, -0.5]] {
+        let (curves, plot) = plot(&[&flat, &steep], slopes);
+        let Fan { slopes, apex, run, .. } = plot.fan.as_ref().unwrap();
+        let far = apex[0] + run;
+        let below = |height: f64| {
+            let span = [apex[0].min(far), apex[0].max(far)];
+            curves.iter().all(|curve| height < curve.lowest_between(span))
+        };
+        for slope in slopes {
+            let end = [far, apex[1] + slope * run];
+            assert!(below(end[1]), "{slope}");
+            let [x, y] = plot.at(end);
+            assert!(plot.frame.left < x && x < plot.frame.right(), "{slope}");
+            assert!(plot.frame.top < y && y < plot.frame.bottom(), "{slope}");
+        }
+        assert!(!below(plot.y.at(1.0)), "there are curves above the rays");
+    }
+}
+
+#[test]
+fn slopes_are_drawn_where_there_is_something_to_compare_them_with() {
+    let values = power(1.0, 1.0);
+    assert!(plot(&[&values], &[1.0]).1.fan.is_some());
+    assert!(plot(&[&values], &[]).1.fan.is_none());
+    assert!(plot(&[&values], &[f64::NAN, f64::INFINITY]).1.fan.is_none());
+    let alone = [1.0, f64::NAN, 0.5, f64::NAN, 0.25];
+    assert!(plot(&[&alone], &[1.0]).1.fan.is_none());
+}
+
+#[test]
+fn slopes_are_named_as_fractions() {
+    let cases = [
+        (1.0, "1"),
+        (-0.5, "−1/2"),
+        (2.0 / 3.0, "2/3"),
+        (0.75, "3/4"),
+        (1.5, "3/2"),
+        (0.0, "0"),
+        (0.92, "0.92"),
+    ];
+    for (slope, expected) in cases {
+        assert_eq!(fraction(slope), expected);
+    }
+    assert_ne!(fraction(0.67), "2/3");
+}
+
+#[test]
+fn labels_give_way_as_little_as_they_can() {
+    let near = |found: &[f64], expected: &[f64]| {
+        found.len() == expected.len() && found.iter().zip(expected).all(|(a, b)| (a - b).abs() < ROUNDING)
+    };
+    assert!(near(&spread(&[50.0, 10.0], 10.0, [0.0, 100.0]), &[50.0, 10.0]));
+    assert!(near(&spread(&[50.0, 50.0, 50.0], 10.0, [0.0, 100.0]), &[40.0, 50.0, 60.0]));
+    assert!(near(&spread(&[52.0, 50.0, 90.0], 10.0, [0.0, 100.0]), &[56.0, 46.0, 90.0]));
+    assert!(near(&spread(&[-5.0, 0.0, 200.0], 10.0, [0.0, 100.0]), &[0.0, 10.0, 100.0]));
+    assert!(near(&spread(&[3.0; 5], 50.0, [0.0, 100.0]), &[0.0, 25.0, 50.0, 75.0, 100.0]));
+    assert!(near(&spread(&[7.0], 50.0, [0.0, 100.0]), &[7.0]));
+    assert!(spread(&[], 50.0, [0.0, 100.0]).is_empty());
+    assert!(!near(&spread(&[50.0, 50.0], 10.0, [0.0, 100.0]), &[50.0, 60.0]));
+}
+
+#[test]
+fn markers_differ_in_shape_and_curves_in_shape_or_colour() {
+    let shape = |index: usize| {
+        let mut canvas = Canvas::new([40, 40]);
+        marker::draw(&mut canvas, index, [20.0, 20.0], MARKER, INK);
+        canvas.encode().unwrap()
+    };
+    let shapes: Vec<Vec<u8>> = (0..marker::KINDS).map(shape).collect();
+    let pairs = |count: usize| (0..count).flat_map(move |a| (0..a).map(move |b| (a, b)));
+    assert!(pairs(marker::KINDS).all(|(a, b)| shapes[a] != shapes[b]));
+    let looks = |index: usize| (index % marker::KINDS, color(index));
+    let distinct = marker::KINDS * CURVES.len();
+    assert!(pairs(distinct).all(|(a, b)| looks(a) != looks(b)));
+    assert_eq!(looks(distinct), looks(0), "then they begin again");
+}
+
+#[test]
+fn a_wrong_length_is_an_error_in_one_line() {
+    let draw = |values: &[f64]| {
+        let series = [Series { name: "two\nlines", values }];
+        render_rates(&RatesPicture { title: "", abscissa: "h", h: &H, series: &series, slopes: &[] })
+    };
+    let message = draw(&[1.0; 3]).expect_err("too short").to_string();
+    assert!(message.contains("has 3 values for 5 levels"), "{message}");
+    assert_eq!(message.lines().count(), 1);
+    assert!(draw(&[1.0; 5]).is_ok());
+}
