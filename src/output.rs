@@ -3,6 +3,7 @@
 mod drawing;
 mod dual;
 mod file;
+mod flux;
 mod mesh_picture;
 pub mod picture;
 mod rates_picture;
@@ -12,6 +13,7 @@ mod vtu;
 
 pub use dual::write_dual_vtu;
 pub use file::{WriteSeek, write_atomically};
+pub use flux::write_flux_vtu;
 pub use mesh_picture::{MeshPicture, MeshPictureError, render_mesh};
 pub use rates_picture::{RatesPicture, RatesPictureError, Series, render_rates};
 pub use summary::{PolishSummary, ResidualSummary, Seconds, Summary};

@@ -58,7 +58,7 @@ pub(super) struct SolveArguments {
     /// Leave the backend's answer as it is
     #[arg(long)]
     pub(super) no_polish: bool,
-    /// Also write the dual mesh, dual.vtu and mesh.png
+    /// Also write the dual mesh: dual.vtu, flux.vtu, mesh.png
     #[arg(long)]
     pub(super) dual: bool,
 }

@@ -50,15 +50,17 @@ pub(super) fn run(arguments: &ConvergeArguments) -> Result<(), Failure> {
         .map_err(|error| failure(&setup.name, error))?;
     let known = levels.len();
     if known < arguments.levels {
+        progress.steps(arguments.levels);
         for level in 0..arguments.levels {
             progress.stage(format!("level {} of {}", level + 1, arguments.levels));
             if level < known {
                 study.skip_level().map_err(|error| failure(&setup.name, error))?;
-                continue;
+            } else {
+                levels.push(study.next_level().map_err(|error| failure(&setup.name, error))?);
+                write_file(&folder.join(LEVELS), |out| write_csv(&levels, out))?;
+                write_file(&folder.join(TABLE), |out| out.write_all(markdown(&levels).as_bytes()))?;
             }
-            levels.push(study.next_level().map_err(|error| failure(&setup.name, error))?);
-            write_file(&folder.join(LEVELS), |out| write_csv(&levels, out))?;
-            write_file(&folder.join(TABLE), |out| out.write_all(markdown(&levels).as_bytes()))?;
+            progress.step();
         }
     }
     write_picture(&folder, &setup.case.title, &levels)?;

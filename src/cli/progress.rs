@@ -22,6 +22,18 @@ impl Progress {
         Self { bar }
     }
 
+    /// Shows a bar of so many steps from now on.
+    pub(super) fn steps(&self, count: usize) {
+        let style = ProgressStyle::with_template("{spinner} [{bar:20}] {msg} ({elapsed})");
+        self.bar.set_style(style.expect("the template is valid"));
+        self.bar.set_length(count as u64);
+    }
+
+    /// One step is done.
+    pub(super) fn step(&self) {
+        self.bar.inc(1);
+    }
+
     /// Shows the current stage.
     pub(super) fn stage(&self, what: impl Into<String>) {
         self.bar.reset_elapsed();

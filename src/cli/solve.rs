@@ -5,14 +5,17 @@ use std::time::Instant;
 
 use super::Failure;
 use super::args::SolveArguments;
+use super::case_file::CaseFile;
 use super::progress::Progress;
 use super::setup::{Setup, make_folder, options, solver, write_file};
 use super::terminal::{fields, grouped, print};
 use crate::action::{ContactSolution, certify};
 use crate::discretization::Discretization;
+use crate::fem::element_loads;
+use crate::flux::{Reconstruction, Reconstructor};
 use crate::mesh::{DualMesh, SubTriangulation};
 use crate::output::picture::{Picture, render};
-use crate::output::{MeshPicture, Seconds, Summary, render_mesh, write_dual_vtu, write_vtu};
+use crate::output::{MeshPicture, Seconds, Summary, render_mesh, write_dual_vtu, write_flux_vtu, write_vtu};
 use crate::solver::PolishReport;
 
 /// The files that hold a solution: present only when it is certified.
@@ -22,6 +25,7 @@ const SUMMARY: &str = "summary.json";
 /// What `--dual` adds.
 const DUAL: &str = "dual.vtu";
 const MESH_PICTURE: &str = "mesh.png";
+const FLUX: &str = "flux.vtu";
 
 pub(super) fn run(arguments: &SolveArguments) -> Result<(), Failure> {
     let progress = Progress::new(arguments.case.quiet);
@@ -50,7 +54,7 @@ pub(super) fn run(arguments: &SolveArguments) -> Result<(), Failure> {
             let start = Instant::now();
             write_solution(&folder, title, &d, &solution)?;
             if arguments.dual {
-                write_dual(&folder, title, &d, &solution)?;
+                write_dual(&folder, &setup.case, &d, &solution)?;
             }
             let seconds = Seconds { output: start.elapsed().as_secs_f64(), ..seconds };
             let summary = Summary::new(title, &d, settings.tolerance, Ok(&solution), seconds);
@@ -63,7 +67,7 @@ pub(super) fn run(arguments: &SolveArguments) -> Result<(), Failure> {
         }
         Err(rejected) => {
             // What an earlier run left is not the solution of this one.
-            for name in [SOLUTION, PICTURE, DUAL, MESH_PICTURE] {
+            for name in [SOLUTION, PICTURE, DUAL, MESH_PICTURE, FLUX] {
                 let _ = std::fs::remove_file(folder.join(name));
             }
             let summary = Summary::new(title, &d, settings.tolerance, Err(&rejected), seconds);
@@ -108,20 +112,29 @@ fn write_solution(
     write_file(&folder.join(PICTURE), |out| out.write_all(&png))
 }
 
-/// The dual mesh `D_h`, with the action as the piecewise constant that it is, and as Figure 1 of the paper.
+/// The dual mesh `D_h`, with the action as the piecewise constant that it is, and as Figure 1 of the paper; the fluxes
+/// on `S_h`.
 fn write_dual(
     folder: &Path,
-    title: &str,
+    case: &CaseFile,
     d: &Discretization,
     solution: &ContactSolution,
 ) -> Result<(), Failure> {
+    let bad_input = |name: &str, error: &dyn std::fmt::Display| Failure::Input(format!("{name}: {error}"));
     let mesh = d.mesh();
-    let sub = SubTriangulation::new(mesh).map_err(|error| Failure::Input(format!("{DUAL}: {error}")))?;
+    let sub = SubTriangulation::new(mesh).map_err(|error| bad_input(DUAL, &error))?;
     let dual = DualMesh::new(mesh, &sub);
     write_file(&folder.join(DUAL), |out| write_dual_vtu(&dual, solution, out))?;
-    let picture = MeshPicture { title, mesh, dual: &dual, contact: Some(solution.contact()) };
-    let png = render_mesh(&picture).map_err(|error| Failure::Input(format!("{MESH_PICTURE}: {error}")))?;
-    write_file(&folder.join(MESH_PICTURE), |out| out.write_all(&png))
+
+    let picture = MeshPicture { title: &case.title, mesh, dual: &dual, contact: Some(solution.contact()) };
+    let png = render_mesh(&picture).map_err(|error| bad_input(MESH_PICTURE, &error))?;
+    write_file(&folder.join(MESH_PICTURE), |out| out.write_all(&png))?;
+
+    let [f1, f2] = case.problem.load();
+    let load = |f| element_loads(mesh, f).map_err(|error| bad_input(FLUX, &error));
+    let reconstructor = Reconstructor::new(d, &sub, [load(f1)?, load(f2)?]);
+    let fluxes = reconstructor.reconstruct(solution.displacement(), Reconstruction::Full);
+    write_file(&folder.join(FLUX), |out| write_flux_vtu(&sub, &fluxes, solution, out))
 }
 
 /// The summary for the eye.

@@ -18,20 +18,32 @@ pub(super) const VTK_POLYGON: u8 = 7;
 pub(super) struct DataArray {
     name: &'static str,
     kind: &'static str,
+    components: usize,
     bytes: Vec<u8>,
 }
 
 impl DataArray {
     pub(super) fn floats(name: &'static str, values: impl IntoIterator<Item = f64>) -> Self {
-        Self { name, kind: "Float64", bytes: values.into_iter().flat_map(f64::to_le_bytes).collect() }
+        Self {
+            name,
+            kind: "Float64",
+            components: 1,
+            bytes: values.into_iter().flat_map(f64::to_le_bytes).collect(),
+        }
+    }
+
+    /// Vectors of the plane, as VTK's three components.
+    pub(super) fn vectors(name: &'static str, values: impl IntoIterator<Item = [f64; 2]>) -> Self {
+        let components = values.into_iter().flat_map(|[x, y]| [x, y, 0.0]);
+        Self { components: 3, ..Self::floats(name, components) }
     }
 
     pub(super) fn integers(name: &'static str, values: impl IntoIterator<Item = usize>) -> Self {
-        Self { name, kind: "Int64", bytes: values.into_iter().flat_map(integer).collect() }
+        Self { name, kind: "Int64", components: 1, bytes: values.into_iter().flat_map(integer).collect() }
     }
 
     pub(super) fn flags(name: &'static str, values: impl IntoIterator<Item = bool>) -> Self {
-        Self { name, kind: "UInt8", bytes: values.into_iter().map(u8::from).collect() }
+        Self { name, kind: "UInt8", components: 1, bytes: values.into_iter().map(u8::from).collect() }
     }
 }
 
@@ -87,8 +99,12 @@ pub(super) fn write_grid(
     writeln!(out, "<UnstructuredGrid>")?;
     writeln!(out, r#"<Piece NumberOfPoints="{}" NumberOfCells="{}">"#, points.len(), cells.count)?;
     writeln!(out, r#"<{section} Scalars="lambda">"#)?;
-    for DataArray { name, kind, bytes } in arrays {
-        write_array(out, &format!(r#"type="{kind}" Name="{name}""#), bytes)?;
+    for DataArray { name, kind, components, bytes } in arrays {
+        write_array(
+            out,
+            &format!(r#"type="{kind}" Name="{name}" NumberOfComponents="{components}""#),
+            bytes,
+        )?;
     }
     writeln!(out, "</{section}>\n<Points>")?;
     let coordinates: Vec<u8> =

@@ -332,7 +332,7 @@ fn the_dual_mesh_is_written_when_asked_for() {
     let folder = folder_with(CASE);
     run(folder.path(), "solve plates.toml --out results --dual --quiet").success();
     let mut expected = RESULTS.to_vec();
-    expected.extend(["dual.vtu", "mesh.png"]);
+    expected.extend(["dual.vtu", "flux.vtu", "mesh.png"]);
     expected.sort_unstable();
     assert_eq!(files(&folder.path().join("results")), expected);
 }
