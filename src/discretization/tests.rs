@@ -210,7 +210,7 @@ fn heights_below_zero_and_loads_without_a_value_are_refused() {
     let error = new(&problem(1.0, 1.0, basin(-0.5))).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "height g is -0.5 at the boundary vertex 0 (0, 0): it must be finite and >= 0 on the whole boundary"
+        "height g is -0.5 at the boundary vertex 0 (0, 0): it must be finite and >= 0 on the whole boundary (where a formula is zero up to rounding, write max(0, ...))"
     );
     let tilted = Function::from_fn(|x, y| 0.5 - x * y);
     let expected = DiscretizationError::Height { vertex: 19, point: [1.0, 0.75], value: -0.25 };
