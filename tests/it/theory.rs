@@ -8,7 +8,7 @@ use std::path::Path;
 use membrane_contact::cli::{CaseFile, MeshSource};
 use membrane_contact::mesh::{MeshFamily, generate};
 use membrane_contact::solver::{ActiveSet, SolverOptions};
-use membrane_contact::study::{ConvergenceStudy, LevelErrors, MEASURES, fitted_rate};
+use membrane_contact::study::{ConvergenceStudy, LevelErrors, MEASURES, fitted_rate, markdown};
 
 /// The rates expected over all levels, in the order of [`MEASURES`], and how far a measured one may be off. A curved or
 /// oblique free boundary passes through the elements differently on each level: its rates are erratic.
@@ -16,6 +16,10 @@ struct Expected {
     case: &'static str,
     rates: [Option<(f64, f64)>; 6],
 }
+
+/// What one more refinement adds to the figure in H^-1, at most: about a tenth where the action jumps, the same fraction on
+/// every level, so that rates do not feel it.
+const LIFT: f64 = 0.15;
 
 const STEADY: f64 = 0.1;
 const ERRATIC: f64 = 0.2;
@@ -110,11 +114,21 @@ fn a_wrong_rate_is_seen() {
 #[test]
 #[ignore = "long: `bash tests/long.sh`"]
 fn rates_up_to_250_000_vertices_are_those_of_the_theory() {
+    let mut wrong = Vec::new();
     for Expected { case, rates } in EXPECTED {
         let levels = levels(study(case, None), 5);
         let finest = levels[4];
         assert!(finest.vertices >= 250_000, "{case}: {} vertices", finest.vertices);
-        assert!(finest.lambda_dual_estimate <= 0.1 * finest.lambda_dual, "{case}: the lift is fine enough");
-        assert_eq!(deviations(&levels, &rates, 0.0), Vec::<String>::new(), "{case}");
+        if finest.lambda_dual_estimate > LIFT * finest.lambda_dual {
+            wrong.push(format!(
+                "{case}: the lift misses {} of {}",
+                finest.lambda_dual_estimate, finest.lambda_dual
+            ));
+        }
+        wrong.extend(
+            deviations(&levels, &rates, 0.0).into_iter().map(|deviation| format!("{case}: {deviation}")),
+        );
+        println!("{case}\n{}", markdown(&levels));
     }
+    assert_eq!(wrong, Vec::<String>::new());
 }
