@@ -1,6 +1,6 @@
 //! Every check of the certificate sees what it checks broken.
 
-use super::{Reason, Residual, Residuals, certify};
+use super::{Action, Reason, Residual, Residuals, certify};
 use crate::discretization::Discretization;
 use crate::mesh::{Mesh, Pattern, VertexKind, rectangle};
 use crate::problem::{ContactProblem, Function};
@@ -134,6 +134,28 @@ fn displacements_of_one_membrane_alone_are_seen_by_the_mismatch_of_the_actions()
         let middle = d.interior()[d.interior().len() / 2];
         candidate.displacement[membrane][middle] *= 1.01;
         assert_seen(&d, candidate, &[|r| r.action_mismatch]);
+    }
+}
+
+#[test]
+fn the_action_depends_on_the_gap_alone() {
+    let mesh = mesh();
+    let d = Discretization::new(&problem(0.0), &mesh).unwrap();
+    let [mut u1, mut u2] = solve(&d, true, None).displacement;
+    let before = Action::recover(&d, &[u1.clone(), u2.clone()]);
+    for &a in d.interior() {
+        let [x, y] = mesh.points()[a];
+        let together = x * x * y;
+        u1[a] += together;
+        u2[a] += together;
+    }
+    let after = Action::recover(&d, &[u1, u2]);
+    let change = |before: &[f64], after: &[f64]| {
+        before.iter().zip(after).map(|(before, after)| (before - after).abs()).fold(0.0, f64::max)
+    };
+    assert!(change(&before.lambda, &after.lambda) < TOLERANCE, "both membranes moved alike");
+    for i in 0..2 {
+        assert!(change(&before.from_membrane[i], &after.from_membrane[i]) > SEEN, "each by itself sees it");
     }
 }
 
