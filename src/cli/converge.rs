@@ -18,6 +18,7 @@ const PICTURE: &str = "convergence.png";
 const SLOPES: [f64; 4] = [0.5, 1.0, 1.5, 2.0];
 /// What the levels belong to: a run of another case file, solver or first mesh starts anew.
 const ORIGIN: &str = "converge.toml";
+const VERSION: &str = concat!("membranes ", env!("CARGO_PKG_VERSION"));
 
 pub(super) fn run(arguments: &ConvergeArguments) -> Result<(), Failure> {
     let progress = Progress::new(arguments.case.quiet);
@@ -33,8 +34,10 @@ pub(super) fn run(arguments: &ConvergeArguments) -> Result<(), Failure> {
     let folder = arguments.case.output_folder(arguments.out.as_ref());
     make_folder(&folder)?;
     let backend = setup.case.solver.backend.as_str();
-    let origin =
-        format!("# solved by {backend}, refined {} times first\n{}", arguments.case.refine, setup.text);
+    let origin = format!(
+        "# {VERSION}, solved by {backend}, refined {} times first\n{}",
+        arguments.case.refine, setup.text
+    );
     let mut levels = levels_so_far(&folder, &origin)?;
     levels.truncate(arguments.levels);
 
@@ -78,6 +81,13 @@ fn levels_so_far(folder: &Path, origin: &str) -> Result<Vec<LevelErrors>, Failur
         let levels: Result<Vec<LevelErrors>, _> = reader.deserialize().collect();
         // A table that is not ours, or of another version, is made anew.
         return Ok(levels.unwrap_or_default());
+    }
+    // Levels of another origin go first: a run that is stopped here must not find them under the new one.
+    match std::fs::remove_file(folder.join(LEVELS)) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => {
+            return Err(Failure::Input(format!("{}: cannot remove: {error}", folder.join(LEVELS).display())));
+        }
+        _ => {}
     }
     write_file(&folder.join(ORIGIN), |out| out.write_all(origin.as_bytes()))?;
     Ok(Vec::new())
