@@ -125,6 +125,7 @@ mod tests {
         let chi: Vec<f64> =
             (0..lambda.len()).map(|j| if j == k { 2.0 * lambda[j] } else { lambda[j] }).collect();
         assert!(variation(&d, &displacement, &lambda, &chi) < -1e-4);
+        assert_eq!(variation(&d, &displacement, &lambda, &lambda), 0.0, "it is a variation of lambda");
     }
 
     #[test]
