@@ -27,6 +27,8 @@ pub use refine::Refinement;
 pub use structured::{Pattern, disk, l_shape, rectangle};
 
 pub(crate) use adjacency::VertexTriangles;
+#[cfg(feature = "cli")]
+pub(crate) use generate::MAX_VERTICES;
 
 /// Where a vertex lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -9,13 +9,10 @@ use super::progress::Progress;
 use super::terminal::grouped;
 use super::{Failure, SolverSettings};
 use crate::discretization::Discretization;
-use crate::mesh::{Mesh, MeshFamily, ReadError, generate};
+use crate::mesh::{MAX_VERTICES, Mesh, MeshFamily, ReadError, generate};
 use crate::output::{Seconds, WriteSeek, write_atomically};
 use crate::qp::Clarabel;
 use crate::solver::{ActiveSet, ContactSolver, QpSolver, SolverOptions};
-
-/// More vertices than this are refused before they are made: see the limit of the generators.
-const MAX_VERTICES: f64 = 5e7;
 
 /// The case and its meshes.
 pub(super) struct Setup {

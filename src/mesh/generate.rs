@@ -7,7 +7,7 @@ use super::{Mesh, Pattern, disk, l_shape, rectangle};
 use crate::problem::Domain;
 
 /// More vertices than this are refused: the system of a mesh of this size needs about 64 GiB.
-const MAX_VERTICES: f64 = 5e7;
+pub(crate) const MAX_VERTICES: f64 = 5e7;
 
 /// How fine a mesh to make.
 #[derive(Debug, Clone, Copy, PartialEq)]
