@@ -1,6 +1,7 @@
 //! The triangulation `T_h` of the domain: checked construction, generators, the Gmsh reader, refinement.
 
 mod adjacency;
+mod ancestry;
 mod check;
 mod dual;
 mod family;
@@ -16,6 +17,9 @@ mod refine;
 pub(crate) mod samples;
 mod structured;
 
+use std::sync::Arc;
+
+pub use ancestry::Parents;
 pub use check::MeshError;
 pub use dual::{DualMesh, SubTriangulation};
 pub use family::MeshFamily;
@@ -49,6 +53,7 @@ pub struct Mesh {
     points: Vec<[f64; 2]>,
     triangles: Vec<[usize; 3]>,
     kind: Vec<VertexKind>,
+    ancestry: Vec<Arc<Parents>>,
 }
 
 impl Mesh {

@@ -186,7 +186,7 @@ impl Mesh {
         for &a in boundary_edges.iter().flat_map(|edge| &edge.ends) {
             kind[a] = VertexKind::Boundary;
         }
-        Ok(Self { points, triangles, kind })
+        Ok(Self { points, triangles, kind, ancestry: Vec::new() })
     }
 }
 

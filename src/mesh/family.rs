@@ -81,7 +81,8 @@ fn boundary_moved_to_circle(mesh: &Mesh, centre: [f64; 2], radius: f64) -> Resul
         let scale = if *kind == VertexKind::Boundary { radius / x.hypot(y) } else { 1.0 };
         [centre[0] + scale * x, centre[1] + scale * y]
     };
-    Mesh::new(mesh.points.iter().zip(&mesh.kind).map(moved).collect(), mesh.triangles.clone())
+    let points = mesh.points.iter().zip(&mesh.kind).map(moved).collect();
+    Ok(Mesh::new(points, mesh.triangles.clone())?.with_ancestry(mesh.ancestry.clone()))
 }
 
 #[cfg(test)]

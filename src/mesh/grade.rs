@@ -30,7 +30,7 @@ impl Mesh {
         let graded = Self::new(self.points.iter().map(move_closer).collect(), self.triangles.clone())?;
         let same_area = (graded.area() - self.area()).abs() <= AREA_TOLERANCE * self.area();
         if same_area && graded.triangles == self.triangles {
-            Ok(graded)
+            Ok(graded.with_ancestry(self.ancestry.clone()))
         } else {
             Err(MeshError::NotGraded { exponent })
         }

@@ -30,7 +30,8 @@ impl Mesh {
             .zip(&midpoints.of_triangle)
             .flat_map(|(&[a, b, c], &[ab, bc, ca])| [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]])
             .collect();
-        Refinement { mesh: Mesh { points, triangles, kind }, parents: midpoints.ends }
+        let ancestry = self.ancestry_of_refinement(&midpoints.ends);
+        Refinement { mesh: Mesh { points, triangles, kind, ancestry }, parents: midpoints.ends }
     }
 }
 

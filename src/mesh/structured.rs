@@ -1,6 +1,11 @@
 //! Structured meshes: rectangle, L-shape, disk.
 
+mod ancestry;
+mod numbering;
+
 use super::{Mesh, MeshError};
+use ancestry::{ancestry, disk_ancestry};
+use numbering::GridNumbering;
 
 /// How a rectangular cell is divided.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -56,34 +61,26 @@ fn grid(
         lower[axis] * (1.0 - t) + upper[axis] * t
     };
     let point = |i: f64, j: f64| [coordinate(0, i, nx), coordinate(1, j, ny)];
-    let cells = || (0..ny).flat_map(move |j| (0..nx).map(move |i| (i, j))).filter(|&(i, j)| inside(i, j));
-
-    let mut number = vec![usize::MAX; (nx + 1) * (ny + 1)];
-    let at = |i: usize, j: usize| j * (nx + 1) + i;
-    for (i, j) in cells() {
-        for corner in [at(i, j), at(i + 1, j), at(i, j + 1), at(i + 1, j + 1)] {
-            number[corner] = 0;
-        }
-    }
-    let mut points = Vec::new();
-    for (corner, number) in number.iter_mut().enumerate().filter(|(_, number)| **number == 0) {
-        *number = points.len();
-        points.push(point((corner % (nx + 1)) as f64, (corner / (nx + 1)) as f64));
+    let numbering = GridNumbering::new([nx, ny], pattern, &inside);
+    let mut points = vec![[0.0; 2]; numbering.vertices];
+    for (i, j, a) in numbering.corners() {
+        points[a] = point(i as f64, j as f64);
     }
     let mut triangles = Vec::new();
-    for (i, j) in cells() {
+    for (i, j) in numbering.cells() {
         let [a, b, c, d] =
-            [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)].map(|corner| number[corner]);
+            [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(|(i, j)| numbering.corner(i, j));
         match pattern {
             Pattern::Right => triangles.extend([[a, b, c], [a, c, d]]),
             Pattern::Crossed => {
-                let centre = points.len();
-                points.push(point(i as f64 + 0.5, j as f64 + 0.5));
+                let centre = numbering.centre(i, j);
+                points[centre] = point(i as f64 + 0.5, j as f64 + 0.5);
                 triangles.extend([[a, b, centre], [b, c, centre], [c, d, centre], [d, a, centre]]);
             }
         }
     }
-    Mesh::new(points, triangles)
+    let ancestry = ancestry(numbering, pattern, &inside);
+    Ok(Mesh::new(points, triangles)?.with_ancestry(ancestry))
 }
 
 /// A disk, as `rings` rings of triangles around its centre; ring `k` has `6 k` vertices. The domain of the mesh is the
@@ -117,7 +114,7 @@ pub fn disk(centre: [f64; 2], radius: f64, rings: usize) -> Result<Mesh, MeshErr
             }
         }
     }
-    Mesh::new(points, triangles)
+    Ok(Mesh::new(points, triangles)?.with_ancestry(disk_ancestry(rings)))
 }
 
 #[cfg(test)]

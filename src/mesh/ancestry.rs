@@ -1,0 +1,145 @@
+//! How the vertices of a mesh come from those of a coarser one.
+
+use std::sync::Arc;
+
+use super::Mesh;
+
+/// The vertices of a mesh as vertices of a coarser mesh and midpoints of its edges.
+///
+/// The prolongation of a P1 function takes the mean of its values at the two ends; on uniform and bisected meshes the
+/// spaces are nested, and the prolongation changes nothing but the mesh.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Parents {
+    coarse_vertices: usize,
+    ends: Vec<[u32; 2]>,
+}
+
+impl Parents {
+    /// # Panics
+    /// When an end is no vertex of the coarser mesh.
+    pub(super) fn new(coarse_vertices: usize, ends: Vec<[u32; 2]>) -> Self {
+        assert!(
+            ends.iter().flatten().all(|&end| (end as usize) < coarse_vertices),
+            "parents are coarse vertices"
+        );
+        Self { coarse_vertices, ends }
+    }
+
+    /// Those of a refinement that keeps the coarse vertices as the first ones; the others are midpoints.
+    pub(super) fn of_refinement(coarse_vertices: usize, midpoints: &[[usize; 2]]) -> Self {
+        let kept = (0..coarse_vertices).map(|a| [a, a]);
+        let ends = kept.chain(midpoints.iter().copied()).map(|ends| ends.map(|a| a as u32)).collect();
+        Self::new(coarse_vertices, ends)
+    }
+
+    /// The number of vertices of the coarser mesh.
+    pub fn coarse_vertices(&self) -> usize {
+        self.coarse_vertices
+    }
+
+    /// For each vertex the ends of the coarse edge whose midpoint it is; twice the same for a coarse vertex.
+    /// Shape: `vertices x 2`.
+    pub fn ends(&self) -> &[[u32; 2]] {
+        &self.ends
+    }
+}
+
+impl Mesh {
+    /// The refinements that made this mesh, from the coarsest mesh to this one; empty when none is known. Multigrid and
+    /// nested iteration run along them.
+    pub fn ancestry(&self) -> &[Arc<Parents>] {
+        &self.ancestry
+    }
+
+    /// The same mesh, with its ancestry known.
+    ///
+    /// # Panics
+    /// When the last refinement does not lead to this mesh.
+    pub(super) fn with_ancestry(mut self, ancestry: Vec<Arc<Parents>>) -> Self {
+        let vertices = ancestry.last().map(|parents| parents.ends.len());
+        assert!(vertices.is_none_or(|vertices| vertices == self.points.len()), "parents of every vertex");
+        self.ancestry = ancestry;
+        self
+    }
+
+    /// The ancestry of a refinement of this mesh.
+    pub(super) fn ancestry_of_refinement(&self, midpoints: &[[usize; 2]]) -> Vec<Arc<Parents>> {
+        let parents = Parents::of_refinement(self.points.len(), midpoints);
+        self.ancestry.iter().cloned().chain([Arc::new(parents)]).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::samples::irregular;
+    use crate::mesh::{Pattern, disk, l_shape, rectangle};
+
+    /// Coordinates of size one are rounded a few times.
+    const ROUNDING: f64 = 1e-14;
+
+    /// How far the vertices are from the means of their parents, where the coarsest vertices lie as in `coarsest`.
+    fn defect(mesh: &Mesh, coarsest: &[[f64; 2]]) -> f64 {
+        let prolong = |points: &[[f64; 2]], parents: &Parents| -> Vec<[f64; 2]> {
+            let at = |end: u32| points[end as usize];
+            let mean = |&[a, b]: &[u32; 2]| [0, 1].map(|axis| 0.5 * (at(a)[axis] + at(b)[axis]));
+            parents.ends().iter().map(mean).collect()
+        };
+        let points =
+            mesh.ancestry().iter().fold(coarsest.to_vec(), |points, parents| prolong(&points, parents));
+        let distance = |(p, q): (&[f64; 2], &[f64; 2])| (p[0] - q[0]).abs().max((p[1] - q[1]).abs());
+        points.iter().zip(mesh.points()).map(distance).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn structured_meshes_are_refinements_of_coarser_ones() {
+        for pattern in [Pattern::Right, Pattern::Crossed] {
+            let square = |cells| rectangle([0.0, 1.0], [2.0, 4.0], cells, pattern).unwrap();
+            let mesh = square([24, 40]);
+            assert_eq!(mesh.ancestry().len(), 3, "24, 12, 6, 3 cells");
+            assert!(defect(&mesh, square([3, 5]).points()) < ROUNDING);
+            assert!(defect(&mesh, square([5, 3]).points()) > 0.1, "another coarsest mesh is noticed");
+            assert!(square([7, 8]).ancestry().is_empty(), "an odd number of cells");
+
+            let mesh = l_shape(1.0, 12, pattern).unwrap();
+            assert_eq!(mesh.ancestry().len(), 2, "12, 6, 3 cells");
+            assert!(defect(&mesh, l_shape(1.0, 3, pattern).unwrap().points()) < ROUNDING);
+        }
+    }
+
+    #[test]
+    fn parents_in_a_structured_mesh_are_ends_of_an_edge() {
+        for pattern in [Pattern::Right, Pattern::Crossed] {
+            let coarse = rectangle([0.0, 0.0], [1.0, 1.0], [4, 4], pattern).unwrap();
+            let fine = rectangle([0.0, 0.0], [1.0, 1.0], [8, 8], pattern).unwrap();
+            let is_edge =
+                |a: usize, b: usize| coarse.triangles().iter().any(|t| t.contains(&a) && t.contains(&b));
+            for &[a, b] in fine.ancestry().last().unwrap().ends() {
+                assert!(is_edge(a as usize, b as usize));
+            }
+        }
+    }
+
+    #[test]
+    fn a_disk_is_a_refinement_of_the_disk_with_half_the_rings() {
+        // On a hexagon the midpoints are where they should be; on a disk the boundary is moved, the numbering is the same.
+        let [coarse, fine] = [3, 6].map(|rings| disk([0.0, 0.0], 1.0, rings).unwrap());
+        let parents = fine.ancestry().last().unwrap();
+        assert_eq!((fine.ancestry().len(), parents.coarse_vertices()), (1, coarse.points().len()));
+        let refined = coarse.refine();
+        let mut expected: Vec<[u32; 2]> = refined.mesh.ancestry()[0].ends().to_vec();
+        let mut found: Vec<[u32; 2]> = parents.ends().iter().map(|&[a, b]| [a.min(b), a.max(b)]).collect();
+        expected.sort_unstable();
+        found.sort_unstable();
+        assert_eq!(found, expected);
+        assert!(defect(&fine, coarse.points()) < 0.1, "and they lie near by");
+    }
+
+    #[test]
+    fn refinements_add_to_the_ancestry() {
+        let coarse = irregular(3);
+        let fine = coarse.refine().mesh.refine().mesh;
+        assert_eq!(fine.ancestry().len(), 2);
+        assert!(defect(&fine, coarse.points()) < ROUNDING);
+    }
+}
