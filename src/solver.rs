@@ -1,12 +1,17 @@
 //! Solvers of the reduced discrete problem (3.4).
 
 mod active_set;
+mod auto;
 pub(crate) mod cholesky;
 mod decoupled;
+mod hierarchy;
+mod multigrid;
 mod polish;
 mod qp_solver;
 
 pub use active_set::ActiveSet;
+pub use auto::Auto;
+pub use multigrid::Multigrid;
 pub use polish::PolishReport;
 pub use qp_solver::QpSolver;
 
@@ -14,6 +19,7 @@ use thiserror::Error;
 
 use crate::discretization::Discretization;
 use crate::qp::{BackendError, Status};
+use cholesky::NotFactored;
 
 /// Anything that solves (3.4): a [`QpBackend`](crate::qp::QpBackend) by way of [`QpSolver`], or a method of its own.
 pub trait ContactSolver {
@@ -101,14 +107,40 @@ pub struct Statistics {
     pub solver: String,
     /// Why it stopped, in its own view.
     pub status: Status,
-    /// Iterations made.
+    /// Iterations made: on the finest level, where there are several.
     pub iterations: usize,
+    /// Levels of the hierarchy that it has used, the finest included; 1 without one.
+    pub levels: usize,
+    /// Which solver was chosen and why, when that was left open.
+    pub choice: Option<String>,
     /// Seconds spent before the first iteration.
     pub setup_seconds: f64,
     /// Seconds spent iterating, the polish included.
     pub solve_seconds: f64,
     /// What the polish did; `None` when it was not asked for or has nothing to do.
     pub polish: Option<PolishReport>,
+}
+
+impl Statistics {
+    /// Of a solver that has not done anything yet.
+    pub(crate) fn of(solver: &str) -> Self {
+        Self {
+            solver: solver.into(),
+            status: Status::Solved,
+            iterations: 0,
+            levels: 1,
+            choice: None,
+            setup_seconds: 0.0,
+            solve_seconds: 0.0,
+            polish: None,
+        }
+    }
+}
+
+impl From<NotFactored> for SolverError {
+    fn from(_: NotFactored) -> Self {
+        Self::NotFactored
+    }
 }
 
 /// A solver cannot run.

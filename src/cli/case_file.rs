@@ -75,11 +75,15 @@ pub enum BackendName {
     Osqp,
     /// The active set method on the decoupled problem.
     ActiveSet,
+    /// Multigrid on the decoupled problem.
+    Multigrid,
+    /// Whichever of our own suits the mesh.
+    Auto,
 }
 
 impl BackendName {
     /// Every name.
-    pub const ALL: [Self; 3] = [Self::Clarabel, Self::Osqp, Self::ActiveSet];
+    pub const ALL: [Self; 5] = [Self::Auto, Self::Multigrid, Self::ActiveSet, Self::Clarabel, Self::Osqp];
 
     /// The name in case files.
     pub fn as_str(self) -> &'static str {
@@ -87,12 +91,14 @@ impl BackendName {
             Self::Clarabel => "clarabel",
             Self::Osqp => "osqp",
             Self::ActiveSet => "active-set",
+            Self::Multigrid => "multigrid",
+            Self::Auto => "auto",
         }
     }
 
-    /// Whether its answers are polished; the others are exact as they are.
+    /// Whether its answers are polished; the others know their contact set.
     pub fn is_polished(self) -> bool {
-        self != Self::ActiveSet
+        matches!(self, Self::Clarabel | Self::Osqp)
     }
 
     /// Whether this build contains it.
@@ -361,7 +367,7 @@ fn mesh_size(section: &mut Section, domain: &Domain) -> Result<MeshSize, Failure
 fn solver(top: &mut Section) -> Result<SolverSettings, Failure> {
     let mut section = top.section("solver")?;
     let backend = match section.text("backend")? {
-        None => BackendName::Clarabel,
+        None => BackendName::Auto,
         Some(name) => name
             .parse()
             .map_err(|problem: String| section.error("backend", format!("= {name:?}: {problem}")))?,

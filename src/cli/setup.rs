@@ -12,7 +12,7 @@ use crate::discretization::Discretization;
 use crate::mesh::{MAX_VERTICES, Mesh, MeshFamily, ReadError, generate};
 use crate::output::{Seconds, WriteSeek, write_atomically};
 use crate::qp::Clarabel;
-use crate::solver::{ActiveSet, ContactSolver, QpSolver, SolverOptions};
+use crate::solver::{ActiveSet, Auto, ContactSolver, Multigrid, QpSolver, SolverOptions};
 
 /// The case and its meshes.
 pub(super) struct Setup {
@@ -93,6 +93,8 @@ pub(super) fn solver(name: BackendName) -> Box<dyn ContactSolver> {
     match name {
         BackendName::Clarabel => Box::new(QpSolver::new(Clarabel)),
         BackendName::ActiveSet => Box::new(ActiveSet),
+        BackendName::Multigrid => Box::new(Multigrid),
+        BackendName::Auto => Box::new(Auto),
         #[cfg(feature = "osqp")]
         BackendName::Osqp => Box::new(QpSolver::new(crate::qp::Osqp)),
         #[cfg(not(feature = "osqp"))]

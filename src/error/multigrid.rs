@@ -18,7 +18,7 @@ const MAX_ITERATIONS: usize = 500;
 /// The P1 spaces with zero boundary values on `T_h`, `S_h` and its uniform refinements: each contains the one before.
 pub(super) struct Multigrid<'d> {
     unknowns: &'d [usize],
-    coarsest: Cholesky<'d>,
+    coarsest: Cholesky,
     levels: Vec<Level>,
 }
 
@@ -44,7 +44,8 @@ impl<'d> Multigrid<'d> {
         sub: &SubTriangulation,
         refinements: usize,
     ) -> Result<(Self, Mesh), MeasureError> {
-        let coarsest = Cholesky::new(d.interior_stiffness()).map_err(|_| MeasureError::NotFactored)?;
+        let coarsest =
+            Cholesky::new(d.interior_stiffness().clone()).map_err(|_| MeasureError::NotFactored)?;
         let mut levels = vec![Level::new(d.mesh(), Parents::default())];
         let mut finest = sub.mesh().clone();
         levels.push(Level::new(&finest, Parents::of_sub_triangulation(d.mesh(), sub)));

@@ -1,32 +1,30 @@
 //! The primal-dual active set method on the obstacle half (Hintermueller, Ito, Kunisch, SIAM J. Optim. 13 (2002) 865).
 
+mod nested;
+mod obstacle;
+#[cfg(test)]
+mod tests;
+
+pub(super) use obstacle::{Limits, Obstacle, guess};
+
 use std::time::{Duration, Instant};
 
 use super::cholesky::NotFactored;
-use super::decoupled::{Decoupled, Gap};
+use super::decoupled::Decoupled;
 use super::{Candidate, ContactSolver, SolverError, SolverOptions, Statistics};
 use crate::discretization::Discretization;
 use crate::qp::Status;
 
 /// The limit of steps when none is given. A cold start needs about as many as there are layers of vertices between the
-/// free boundary and where the first guess puts it; far more than that is a cycle.
+/// free boundary and where the first guess puts it.
 const MAX_STEPS: usize = 2000;
 
-/// A multiplier below zero by less than this fraction of the terms that cancel in it is a zero, rounded.
-const MULTIPLIER_ROUNDING: f64 = 256.0 * f64::EPSILON;
-
-/// A gap below zero by less than this fraction of the displacements' scale is a zero, rounded: the error of a linear
-/// solve, machine precision times a condition number of up to 1e4.
-const GAP_ROUNDING: f64 = 1e-12;
-
-/// A vertex is taken for touching when its multiplier is so much larger than its gap, each in units of the data. A guess
-/// that is too small is repaired in fewer steps than one that is too large: all that has passed through is seen at once.
-const CAUTION: f64 = 30.0;
-
-/// The contact problem decoupled, and its contact set found by repair of a guess: that of the warm start, or none.
+/// The contact problem decoupled, and its contact set found by repair of a guess: that of the warm start, else that of the
+/// next coarser level, solved likewise.
 ///
 /// Works on any mesh. It ends with the exact contact set, so displacements and action are right to rounding. Every step
-/// factors a matrix anew; a warm start saves most of them.
+/// factors a matrix anew, of a pattern that is analysed once for each level. A contact set that would come back is
+/// noticed, see [`Obstacle::settle`].
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ActiveSet;
 
@@ -38,33 +36,29 @@ impl ContactSolver for ActiveSet {
     fn solve(&mut self, d: &Discretization, options: &SolverOptions) -> Result<Candidate, SolverError> {
         options.check()?;
         let start = Instant::now();
-        let guess = match &options.warm_start {
-            Some(start) if start.fits(d) => guess(d, &start.displacement, &start.multiplier),
-            _ => vec![false; d.interior().len()],
+        let limits = Limits {
+            steps: options.max_iterations.unwrap_or(MAX_STEPS),
+            deadline: options.time_limit.map(|seconds| start + Duration::from_secs_f64(seconds)),
         };
-        let deadline = options.time_limit.map(|seconds| start + Duration::from_secs_f64(seconds));
-        let limits = Limits { steps: options.max_iterations.unwrap_or(MAX_STEPS), deadline };
-        let found = settle(d, guess, &limits).map_err(|NotFactored| SolverError::NotFactored)?;
+        let (active, levels) = match &options.warm_start {
+            Some(start) if start.fits(d) => (guess(d, &start.displacement, &start.multiplier), 1),
+            _ => nested::guess_from_coarser_levels(d, &limits)?,
+        };
+        let setup_seconds = start.elapsed().as_secs_f64();
+        let found = settle(d, active, &limits)?;
         Ok(Candidate {
             displacement: found.displacement,
             multiplier: found.multiplier,
             statistics: Statistics {
-                solver: self.name().into(),
                 status: found.status,
                 iterations: found.repairs + 1,
-                setup_seconds: 0.0,
-                solve_seconds: start.elapsed().as_secs_f64(),
-                polish: None,
+                levels,
+                setup_seconds,
+                solve_seconds: start.elapsed().as_secs_f64() - setup_seconds,
+                ..Statistics::of(self.name())
             },
         })
     }
-}
-
-/// When to stop although the contact set is not consistent yet.
-pub(super) struct Limits {
-    /// Linear solves for the gap.
-    pub(super) steps: usize,
-    pub(super) deadline: Option<Instant>,
 }
 
 /// Displacements over vertices and multipliers over unknowns for the last contact set.
@@ -78,47 +72,25 @@ pub(super) struct Settled {
 }
 
 /// Solves for the contact set `active`, and repairs it until it is consistent.
-pub(super) fn settle(
-    d: &Discretization,
-    mut active: Vec<bool>,
-    limits: &Limits,
-) -> Result<Settled, NotFactored> {
+pub(super) fn settle(d: &Discretization, active: Vec<bool>, limits: &Limits) -> Result<Settled, NotFactored> {
     let decoupled = Decoupled::new(d);
-    let mut repairs = 0;
-    let (gap, status) = loop {
-        let gap = decoupled.solve_gap(&active)?;
-        let repaired = repair(d, &active, &gap);
-        if repaired == active {
-            break (gap, Status::Solved);
-        }
-        if repairs + 1 >= limits.steps {
-            break (gap, Status::IterationLimit);
-        }
-        if limits.deadline.is_some_and(|deadline| Instant::now() > deadline) {
-            break (gap, Status::TimeLimit);
-        }
-        active = repaired;
-        repairs += 1;
+    let interior = d.interior();
+    let lifted = |load: &dyn Fn(usize) -> f64, height: &dyn Fn(usize) -> f64| -> Vec<f64> {
+        interior.iter().map(|&a| load(a) - d.stiffness_row(a, height)).collect()
     };
+    // `height` is zero inside, so these are `b - K_IB g`.
+    let gap_load = lifted(&|a| decoupled.gap_load(a), &|b| d.height()[b]);
+    let sum_load = lifted(&|a| decoupled.sum_load(a), &|b| decoupled.sum_height(b));
+    let terms = interior.iter().map(|&a| decoupled.gap_load_terms(a)).collect();
+    let mut half = Obstacle::new(d.interior_stiffness(), gap_load, terms, d.scales().displacement)?;
+    let (gap, status, repairs) = half.settle(active, limits)?;
+    let s = half.without_obstacle(&sum_load)?;
+    let over_vertices = |unknowns: &[f64]| d.extend(unknowns, |_| 0.0);
     let w: Vec<f64> = gap.w.iter().map(|w| w.max(0.0)).collect();
-    let displacement = decoupled.recombine(&decoupled.solve_sum()?, &w);
-    let multiplier = gap.y.iter().map(|y| y.max(0.0)).collect();
-    Ok(Settled { displacement, multiplier, repairs, status })
-}
-
-/// The vertices that touch, as displacements and multipliers have it.
-pub(super) fn guess(d: &Discretization, [u1, u2]: &[Vec<f64>; 2], multiplier: &[f64]) -> Vec<bool> {
-    let scales = d.scales();
-    let touches = |(&a, y): (&usize, &f64)| {
-        let action = y / (d.dual_area()[a] * scales.force_density);
-        action > CAUTION * (u1[a] - u2[a]) / scales.displacement
-    };
-    d.interior().iter().zip(multiplier).map(touches).collect()
-}
-
-/// Vertices that pull leave the contact set, vertices that have passed through each other join it.
-fn repair(d: &Discretization, active: &[bool], gap: &Gap) -> Vec<bool> {
-    let through = -GAP_ROUNDING * d.scales().displacement;
-    let pushes = |k: usize| gap.y[k] >= -MULTIPLIER_ROUNDING * gap.y_terms[k];
-    (0..active.len()).map(|k| if active[k] { pushes(k) } else { gap.w[k] < through }).collect()
+    Ok(Settled {
+        displacement: decoupled.recombine(&over_vertices(&s), &over_vertices(&w)),
+        multiplier: gap.y.iter().map(|y| decoupled.gap_tension() * y.max(0.0)).collect(),
+        repairs,
+        status,
+    })
 }

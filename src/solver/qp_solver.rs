@@ -35,12 +35,10 @@ impl ContactSolver for QpSolver {
             displacement: [d.extend(x1, |a| d.height()[a]), d.extend(x2, |_| 0.0)],
             multiplier: solution.y,
             statistics: Statistics {
-                solver: self.name().into(),
                 status: solution.status,
                 iterations: solution.iterations,
                 setup_seconds: posing + solution.setup_seconds,
-                solve_seconds: 0.0,
-                polish: None,
+                ..Statistics::of(self.name())
             },
         };
         if options.polish {

@@ -31,7 +31,9 @@ impl GridNumbering {
                 *cell = cells;
                 cells += 1;
                 let first = j * (nx + 1) + i;
-                [first, first + 1, first + nx + 1, first + nx + 2].map(|at| corner[at] = 0);
+                for at in [first, first + 1, first + nx + 1, first + nx + 2] {
+                    corner[at] = 0;
+                }
             }
         }
         let mut corners = 0;

@@ -1,0 +1,250 @@
+//! The levels of a discretization: its stiffness matrix on coarser and coarser spaces.
+//!
+//! They follow the refinements that made the mesh; below its coarsest ancestor, and on a mesh without ancestors, they are
+//! algebraic.
+
+mod coarsening;
+mod coloring;
+mod galerkin;
+mod matrix;
+mod ordering;
+mod transfer;
+
+pub(super) use coloring::Coloring;
+pub(super) use galerkin::RowSum;
+pub(super) use matrix::{Pattern, Values};
+pub(super) use transfer::Transfer;
+
+use rayon::prelude::*;
+
+use crate::discretization::Discretization;
+use coarsening::coarsened;
+use galerkin::galerkin;
+use matrix::{BLOCK, compact_stiffness, reordered};
+use ordering::{banded_orders, is_banded};
+
+/// An entry below this fraction of the diagonal does not couple two rows: rounding of a Galerkin product.
+const UNCOUPLED: f64 = 1e-10;
+
+/// As many unknowns are solved for directly.
+const DIRECT: usize = 64;
+
+/// A coarser level that keeps more than this fraction of the unknowns is not worth having.
+const SLOW_COARSENING: f64 = 0.9;
+
+/// The stiffness matrix on a hierarchy of spaces, from the coarsest to that of the mesh. Level 0 repeats level 1: there
+/// systems are solved directly.
+pub(super) struct Hierarchy {
+    levels: Vec<Level>,
+    /// The vertex of the mesh to which each row of the finest level belongs.
+    vertex: Vec<u32>,
+    /// How many levels come from the ancestry of the mesh.
+    geometric: usize,
+}
+
+/// One space. Rows belong to the vertices, in the numbering of the level; those of held vertices (on the boundary, or in no
+/// triangle) are empty.
+#[derive(Clone)]
+pub(super) struct Level {
+    pub(super) pattern: Pattern,
+    pub(super) values: Values,
+    pub(super) coloring: Coloring,
+    /// From the level below; that of level 0 has no rows.
+    pub(super) transfer: Transfer,
+}
+
+impl Hierarchy {
+    /// Makes the levels of a discretization.
+    pub(super) fn new(d: &Discretization) -> Self {
+        let mut orders = orders(d);
+        let finest_order = orders.as_mut().and_then(Vec::pop);
+        let (pattern, values) = compact_stiffness(d, finest_order.as_deref());
+        let (finest, rows) = Level::colored(pattern, values);
+        let vertex = composed(finest_order.as_deref(), rows);
+        let mut order = vertex.clone();
+        let mut finest_first = vec![finest];
+        for parents in d.mesh().ancestry().iter().rev() {
+            let coarse_order = orders.as_mut().and_then(Vec::pop);
+            let position = coarse_order.as_deref().map(inverse);
+            let of_row = |&a: &u32| parents.ends()[a as usize];
+            let in_order = |a: u32| position.as_ref().map_or(a, |position| position[a as usize]);
+            let ends = order.iter().map(of_row).map(|ends| ends.map(in_order));
+            let transfer = Transfer::from_midpoints(parents.coarse_vertices(), ends);
+            let Some(rows) = descend(&mut finest_first, transfer) else { break };
+            order = composed(coarse_order.as_deref(), rows);
+        }
+        let geometric = finest_first.len();
+        while finest_first[finest_first.len() - 1].unknowns() > DIRECT {
+            let coarsest = &finest_first[finest_first.len() - 1];
+            let unknowns = coarsest.unknowns();
+            let transfer = coarsened(&coarsest.pattern, &coarsest.values);
+            if descend(&mut finest_first, transfer).is_none() {
+                break;
+            }
+            if finest_first[finest_first.len() - 1].unknowns() as f64 > SLOW_COARSENING * unknowns as f64 {
+                break;
+            }
+        }
+        let coarsest = finest_first.last_mut().expect("there is a finest level");
+        coarsest.transfer = Transfer::identity(coarsest.pattern.rows());
+        let direct = Level { transfer: Transfer::default(), ..coarsest.clone() };
+        finest_first.push(direct);
+        finest_first.reverse();
+        Self { levels: finest_first, vertex, geometric }
+    }
+
+    pub(super) fn levels(&self) -> &[Level] {
+        &self.levels
+    }
+
+    /// The number of the finest level.
+    pub(super) fn finest(&self) -> usize {
+        self.levels.len() - 1
+    }
+
+    /// How many levels come from the refinements that made the mesh.
+    pub(super) fn geometric(&self) -> usize {
+        self.geometric
+    }
+
+    /// The vertex of the mesh to which each row of the finest level belongs.
+    pub(super) fn vertex(&self) -> &[u32] {
+        &self.vertex
+    }
+
+    /// From a vector over the vertices of the mesh to one over the rows of the finest level.
+    pub(super) fn to_rows(&self, over_vertices: impl Fn(usize) -> f64 + Sync) -> Vec<f64> {
+        self.vertex.par_iter().with_min_len(BLOCK).map(|&a| over_vertices(a as usize)).collect()
+    }
+
+    /// And back.
+    pub(super) fn to_vertices(&self, over_rows: &[f64]) -> Vec<f64> {
+        let mut values = vec![0.0; self.vertex.len()];
+        for (&a, &value) in self.vertex.iter().zip(over_rows) {
+            values[a as usize] = value;
+        }
+        values
+    }
+
+    /// The functionals `b - K_IB g` of all levels, for `b` and `g` over the rows of the finest one; and `g` on all levels.
+    pub(super) fn lifted(&self, load: Vec<f64>, height: Vec<f64>) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
+        let (mut loads, mut heights) = (vec![load], vec![height]);
+        for level in self.levels[1..].iter().rev() {
+            let [load, height] = [&loads, &heights].map(|finest_first| &finest_first[finest_first.len() - 1]);
+            let injected = level.transfer.inject(height);
+            loads.push(level.transfer.restrict(load));
+            heights.push(injected);
+        }
+        loads.reverse();
+        heights.reverse();
+        for (level, (load, height)) in self.levels.iter().zip(loads.iter_mut().zip(&heights)) {
+            level.lift(load, height);
+        }
+        (loads, heights)
+    }
+
+    /// The memory that it takes, bytes.
+    pub(super) fn bytes(&self) -> usize {
+        let level = |level: &Level| level.pattern.bytes() + level.values.bytes() + level.transfer.bytes();
+        self.levels.iter().map(level).sum::<usize>() + 4 * self.vertex.len()
+    }
+}
+
+/// Makes the level below the last one, unless nothing is left to solve for there. Returns the order of its rows.
+fn descend(finest_first: &mut Vec<Level>, transfer: Transfer) -> Option<Vec<u32>> {
+    let fine = finest_first.last_mut().expect("there is a finest level");
+    let held = |a: usize| fine.is_held(transfer.same_vertex(a));
+    if (0..transfer.coarse_rows()).all(held) {
+        return None;
+    }
+    let (pattern, values) = galerkin((&fine.pattern, &fine.values), &transfer, held);
+    let (coarse, rows) = Level::colored(pattern, values);
+    fine.transfer = transfer.with_coarse_order(&rows, &inverse(&rows));
+    finest_first.push(coarse);
+    Some(rows)
+}
+
+impl Level {
+    /// A level without its transfer, its rows ordered by windows and colours; and the rows in that order.
+    fn colored(pattern: Pattern, values: Values) -> (Self, Vec<u32>) {
+        let coupled = |i: usize| {
+            let entries = pattern.row(i).iter().zip(&values.off_diagonal[pattern.range(i)]);
+            let threshold = UNCOUPLED * values.diagonal[i];
+            let coupled = entries.filter(move |(_, a)| a.abs() > threshold).map(|(&j, _)| j as usize);
+            coupled.filter(|&j| values.diagonal[j] != 0.0)
+        };
+        let (coloring, rows) = Coloring::new(pattern.rows(), pattern.bandwidth(), coupled);
+        let (pattern, values) = reordered((&pattern, &values), &rows, &inverse(&rows));
+        (Self { pattern, values, coloring, transfer: Transfer::default() }, rows)
+    }
+
+    /// Whether a vertex is on the boundary, or in no triangle.
+    #[inline(always)]
+    pub(super) fn is_held(&self, i: usize) -> bool {
+        self.values.diagonal[i] == 0.0
+    }
+
+    /// Vertices that are not held.
+    pub(super) fn unknowns(&self) -> usize {
+        self.values.diagonal.iter().filter(|&&diagonal| diagonal != 0.0).count()
+    }
+
+    /// `b - K_IB g`; zero at held vertices.
+    fn lift(&self, load: &mut [f64], height: &[f64]) {
+        for (i, load) in load.iter_mut().enumerate() {
+            if self.is_held(i) {
+                *load = 0.0;
+                continue;
+            }
+            for (&j, a) in self.pattern.row(i).iter().zip(&self.values.off_diagonal[self.pattern.range(i)]) {
+                if self.is_held(j as usize) {
+                    *load -= a * height[j as usize];
+                }
+            }
+        }
+    }
+}
+
+/// The vertices of the meshes of the ancestry and of the mesh itself in banded orders; `None` when that of the mesh is
+/// banded as it is, as those of structured meshes are.
+fn orders(d: &Discretization) -> Option<Vec<Vec<u32>>> {
+    let k = d.stiffness();
+    let reach = |a: usize| {
+        let row = k.outer_view(a).expect("a vertex has a row");
+        let ends = [row.indices().first(), row.indices().last()];
+        ends.into_iter().flatten().map(|&b| a.abs_diff(b)).max().unwrap_or(0)
+    };
+    let bandwidth = (0..k.rows()).into_par_iter().with_min_len(BLOCK).map(reach).max().unwrap_or(0);
+    if is_banded(k.rows(), bandwidth) {
+        return None;
+    }
+    let ancestry = d.mesh().ancestry();
+    // The edges of the coarsest mesh have the first midpoints; without an ancestry they are the entries of the matrix.
+    let (vertices, edges): (usize, Vec<[u32; 2]>) = match ancestry.first() {
+        Some(parents) => {
+            let edges = parents.ends().iter().copied().filter(|[a, b]| a != b);
+            (parents.coarse_vertices(), edges.collect())
+        }
+        None => {
+            let entries = k.iter().map(|(_, (a, b))| [a as u32, b as u32]);
+            (k.rows(), entries.filter(|[a, b]| a < b).collect())
+        }
+    };
+    Some(banded_orders(vertices, &edges, ancestry))
+}
+
+/// The vertices of the rows, when these are numbers in an order of the vertices.
+fn composed(order: Option<&[u32]>, rows: Vec<u32>) -> Vec<u32> {
+    match order {
+        Some(order) => rows.into_iter().map(|row| order[row as usize]).collect(),
+        None => rows,
+    }
+}
+
+fn inverse(order: &[u32]) -> Vec<u32> {
+    let mut position = vec![0; order.len()];
+    for (i, &old) in order.iter().enumerate() {
+        position[old as usize] = i as u32;
+    }
+    position
+}

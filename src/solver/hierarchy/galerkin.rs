@@ -1,0 +1,105 @@
+//! Galerkin products: the matrix of a coarser level is `P' A P`.
+
+use rayon::prelude::*;
+
+use super::matrix::{BLOCK, Pattern, Rows, Values, assemble};
+use super::transfer::Transfer;
+
+/// The row of a coarse vertex is gathered here: which columns it has, and their entries.
+pub(in crate::solver) struct RowSum {
+    /// Where a column stands among those of this row, plus one; zero elsewhere.
+    place: Vec<u32>,
+    pub(in crate::solver) column: Vec<u32>,
+    pub(in crate::solver) value: Vec<f64>,
+}
+
+impl RowSum {
+    pub(in crate::solver) fn new(columns: usize) -> Self {
+        Self { place: vec![0; columns], column: Vec::new(), value: Vec::new() }
+    }
+
+    #[inline(always)]
+    fn add(&mut self, column: usize, value: f64) {
+        let place = self.place[column];
+        if place == 0 {
+            self.column.push(column as u32);
+            self.value.push(value);
+            self.place[column] = self.column.len() as u32;
+        } else {
+            self.value[place as usize - 1] += value;
+        }
+    }
+
+    fn clear(&mut self) {
+        for &column in &self.column {
+            self.place[column as usize] = 0;
+        }
+        self.column.clear();
+        self.value.clear();
+    }
+
+    /// The entry of a column; zero where there is none.
+    pub(in crate::solver) fn at(&self, column: usize) -> f64 {
+        match self.place[column] {
+            0 => 0.0,
+            place => self.value[place as usize - 1],
+        }
+    }
+
+    /// `sum_{i,j} P_iA a_ij P_jB` for one `A` and all `B`, over those `i`, `j` that are not `frozen`.
+    pub(in crate::solver) fn gather(
+        &mut self,
+        (pattern, values): (&Pattern, &Values),
+        transfer: &Transfer,
+        a: usize,
+        frozen: impl Fn(usize) -> bool,
+    ) {
+        self.clear();
+        for (i, weight) in transfer.children(a) {
+            if frozen(i) || values.diagonal[i] == 0.0 {
+                continue;
+            }
+            for (b, other) in transfer.parents(i) {
+                self.add(b, weight * values.diagonal[i] * other);
+            }
+            for (&j, value) in pattern.row(i).iter().zip(&values.off_diagonal[pattern.range(i)]) {
+                if frozen(j as usize) {
+                    continue;
+                }
+                for (b, other) in transfer.parents(j as usize) {
+                    self.add(b, weight * value * other);
+                }
+            }
+        }
+    }
+}
+
+/// `P' A P`, with empty rows for the coarse vertices that are held. Parallel; every sum has one order.
+pub(super) fn galerkin(
+    fine: (&Pattern, &Values),
+    transfer: &Transfer,
+    held: impl Fn(usize) -> bool + Sync,
+) -> (Pattern, Values) {
+    let coarse_rows = transfer.coarse_rows();
+    let block = |sum: &mut RowSum, block: usize| {
+        let mut rows = Rows::default();
+        for a in block * BLOCK..((block + 1) * BLOCK).min(coarse_rows) {
+            let mut diagonal = 0.0;
+            if !held(a) {
+                sum.gather(fine, transfer, a, |_| false);
+                diagonal = sum.at(a);
+                for (&column, &value) in sum.column.iter().zip(&sum.value) {
+                    if column as usize != a {
+                        rows.column.push(column);
+                        rows.off_diagonal.push(value);
+                    }
+                }
+            }
+            rows.diagonal.push(diagonal);
+            rows.ends.push(rows.column.len());
+        }
+        rows
+    };
+    let blocks = (0..coarse_rows.div_ceil(BLOCK)).into_par_iter();
+    assemble(blocks.map_init(|| RowSum::new(coarse_rows), block).collect())
+}

@@ -1,0 +1,169 @@
+//! Symmetric matrices in compact rows.
+
+use rayon::prelude::*;
+
+use super::galerkin::RowSum;
+use super::inverse;
+use crate::discretization::Discretization;
+use crate::mesh::VertexKind;
+
+/// Rows that are made together.
+pub(super) const BLOCK: usize = 8192;
+
+/// Where the off-diagonal entries of a matrix stand: compressed rows with 32-bit indices.
+#[derive(Debug, Clone, Default)]
+pub(in crate::solver) struct Pattern {
+    start: Vec<u32>,
+    column: Vec<u32>,
+}
+
+/// The entries of a matrix: of the diagonal, and off it in the order of the pattern.
+#[derive(Debug, Clone, Default)]
+pub(in crate::solver) struct Values {
+    pub(in crate::solver) off_diagonal: Vec<f64>,
+    pub(in crate::solver) diagonal: Vec<f64>,
+    /// The reciprocals of the diagonal; zero for the empty rows of vertices that are held.
+    pub(in crate::solver) inverse: Vec<f64>,
+}
+
+/// Consecutive rows of a matrix.
+#[derive(Debug, Default)]
+pub(super) struct Rows {
+    /// Where each row ends among the entries.
+    pub(super) ends: Vec<usize>,
+    pub(super) column: Vec<u32>,
+    pub(super) off_diagonal: Vec<f64>,
+    pub(super) diagonal: Vec<f64>,
+}
+
+impl Pattern {
+    /// The entries of row `i`, as a range.
+    #[inline(always)]
+    pub(in crate::solver) fn range(&self, i: usize) -> std::ops::Range<usize> {
+        self.start[i] as usize..self.start[i + 1] as usize
+    }
+
+    /// The columns of row `i`.
+    #[inline(always)]
+    pub(in crate::solver) fn row(&self, i: usize) -> &[u32] {
+        &self.column[self.range(i)]
+    }
+
+    pub(in crate::solver) fn rows(&self) -> usize {
+        self.start.len() - 1
+    }
+
+    pub(super) fn bytes(&self) -> usize {
+        size_of_val(&self.start[..]) + size_of_val(&self.column[..])
+    }
+
+    /// The largest distance of a row and a column.
+    pub(super) fn bandwidth(&self) -> usize {
+        let reach = |i: usize| self.row(i).iter().map(|&j| i.abs_diff(j as usize)).max().unwrap_or(0);
+        (0..self.rows()).into_par_iter().with_min_len(BLOCK).map(reach).max().unwrap_or(0)
+    }
+}
+
+impl Values {
+    /// `sum_j a_ij x_j` over the columns off the diagonal.
+    #[inline(always)]
+    pub(in crate::solver) fn off_diagonal_product(&self, pattern: &Pattern, i: usize, x: &[f64]) -> f64 {
+        let range = pattern.range(i);
+        let mut sum = 0.0;
+        for (&j, &a) in pattern.column[range.clone()].iter().zip(&self.off_diagonal[range]) {
+            sum += a * x[j as usize];
+        }
+        sum
+    }
+
+    pub(in crate::solver) fn bytes(&self) -> usize {
+        [&self.off_diagonal, &self.diagonal, &self.inverse]
+            .map(|values| size_of_val(&values[..]))
+            .iter()
+            .sum()
+    }
+
+    /// Replaces the row `i` by a sum whose columns are in the pattern.
+    pub(in crate::solver) fn set_row(&mut self, pattern: &Pattern, i: usize, sum: &RowSum) {
+        for (&j, value) in pattern.row(i).iter().zip(&mut self.off_diagonal[pattern.range(i)]) {
+            *value = sum.at(j as usize);
+        }
+        self.diagonal[i] = sum.at(i);
+        self.inverse[i] = reciprocal(self.diagonal[i]);
+    }
+}
+
+/// Puts blocks of consecutive rows together.
+pub(super) fn assemble(blocks: Vec<Rows>) -> (Pattern, Values) {
+    let count = |of: fn(&Rows) -> usize| blocks.iter().map(of).sum::<usize>();
+    let (rows, entries) = (count(|block| block.ends.len()), count(|block| block.column.len()));
+    let mut pattern = Pattern { start: Vec::with_capacity(rows + 1), column: Vec::with_capacity(entries) };
+    let mut values = Values {
+        off_diagonal: Vec::with_capacity(entries),
+        diagonal: Vec::with_capacity(rows),
+        inverse: Vec::with_capacity(rows),
+    };
+    pattern.start.push(0);
+    for block in blocks {
+        let offset = pattern.column.len();
+        pattern.start.extend(block.ends.iter().map(|end| (offset + end) as u32));
+        pattern.column.extend(block.column);
+        values.off_diagonal.extend(block.off_diagonal);
+        values.inverse.extend(block.diagonal.iter().copied().map(reciprocal));
+        values.diagonal.extend(block.diagonal);
+    }
+    (pattern, values)
+}
+
+fn reciprocal(value: f64) -> f64 {
+    if value == 0.0 { 0.0 } else { value.recip() }
+}
+
+/// The rows and columns of a matrix in another order: row `order[i]` becomes row `i`, column `j` becomes `position[j]`.
+pub(super) fn reordered(
+    (pattern, values): (&Pattern, &Values),
+    order: &[u32],
+    position: &[u32],
+) -> (Pattern, Values) {
+    let block = |block: &[u32]| {
+        let mut rows = Rows::default();
+        for &old in block {
+            let range = pattern.range(old as usize);
+            rows.column.extend(pattern.column[range.clone()].iter().map(|&j| position[j as usize]));
+            rows.off_diagonal.extend_from_slice(&values.off_diagonal[range]);
+            rows.diagonal.push(values.diagonal[old as usize]);
+            rows.ends.push(rows.column.len());
+        }
+        rows
+    };
+    assemble(order.par_chunks(BLOCK).map(block).collect())
+}
+
+/// `K` with empty rows for held vertices, the vertices in this order.
+pub(super) fn compact_stiffness(d: &Discretization, order: Option<&[u32]>) -> (Pattern, Values) {
+    let k = d.stiffness();
+    let kind = d.mesh().kind();
+    let position = order.map(inverse);
+    let block = |block: usize| {
+        let mut rows = Rows::default();
+        for i in block * BLOCK..((block + 1) * BLOCK).min(k.rows()) {
+            let a = order.map_or(i, |order| order[i] as usize);
+            let mut diagonal = 0.0;
+            if kind[a] == VertexKind::Interior {
+                let row = k.outer_view(a).expect("a vertex has a row");
+                for (b, &value) in row.iter() {
+                    if b == a {
+                        diagonal = value;
+                    } else {
+                        rows.column.push(position.as_ref().map_or(b as u32, |position| position[b]));
+                        rows.off_diagonal.push(value);
+                    }
+                }
+            }
+            rows.diagonal.push(diagonal);
+            rows.ends.push(rows.column.len());
+        }
+        rows
+    };
+    assemble((0..k.rows().div_ceil(BLOCK)).into_par_iter().map(block).collect())
+}

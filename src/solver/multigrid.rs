@@ -1,0 +1,103 @@
+//! Multigrid on the decoupled problem.
+
+mod correction;
+mod direct;
+mod half;
+mod sweep;
+mod truncation;
+#[cfg(test)]
+mod tests;
+
+use std::time::{Duration, Instant};
+
+use super::decoupled::Decoupled;
+use super::hierarchy::Hierarchy;
+use super::{Candidate, ContactSolver, SolverError, SolverOptions, StartingPoint, Statistics};
+use crate::discretization::Discretization;
+use crate::qp::Status;
+use half::{HalfProblem, HalfSolution, Limits, solve};
+
+/// The limit of cycles when none is given. Ten are enough on meshes of ordinary quality.
+const MAX_CYCLES: usize = 200;
+
+/// Both halves may miss the tolerance by as much: their residuals add up in those of the membranes.
+const SHARE: f64 = 0.5;
+
+/// The contact problem decoupled; both halves by multigrid, one on each of two threads.
+///
+/// Truncated nonsmooth Newton multigrid for the gap, plain multigrid for the sum, on the refinements that made the mesh and
+/// on algebraic levels below them; nested iteration from the coarsest level. The cost of a cycle is linear, and the number
+/// of cycles does not depend on the size of the mesh. The energy falls in every cycle. It ends when the contact set stays and
+/// the residuals are within the tolerance. Results do not depend on the number of threads.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Multigrid;
+
+impl ContactSolver for Multigrid {
+    fn name(&self) -> &str {
+        "multigrid"
+    }
+
+    fn solve(&mut self, d: &Discretization, options: &SolverOptions) -> Result<Candidate, SolverError> {
+        options.check()?;
+        let start = Instant::now();
+        let hierarchy = Hierarchy::new(d);
+        let setup_seconds = start.elapsed().as_secs_f64();
+        let decoupled = Decoupled::new(d);
+        let [gap, sum] = halves(&hierarchy, &decoupled, d, options);
+        let limits = Limits {
+            cycles: options.max_iterations.unwrap_or(MAX_CYCLES),
+            deadline: options.time_limit.map(|seconds| start + Duration::from_secs_f64(seconds)),
+        };
+        let (gap, sum) = rayon::join(|| solve(&hierarchy, gap, &limits), || solve(&hierarchy, sum, &limits));
+        let (gap, sum) = (gap?, sum?);
+        let w = hierarchy.to_vertices(&gap.x);
+        let y = hierarchy.to_vertices(&gap.y);
+        Ok(Candidate {
+            displacement: decoupled.recombine(&hierarchy.to_vertices(&sum.x), &w),
+            multiplier: d.interior().iter().map(|&a| decoupled.gap_tension() * y[a]).collect(),
+            statistics: Statistics {
+                status: worse(&gap, &sum),
+                iterations: gap.cycles.max(sum.cycles),
+                levels: hierarchy.finest(),
+                setup_seconds,
+                solve_seconds: start.elapsed().as_secs_f64() - setup_seconds,
+                ..Statistics::of(self.name())
+            },
+        })
+    }
+}
+
+/// The gap and the sum.
+fn halves(
+    hierarchy: &Hierarchy,
+    decoupled: &Decoupled,
+    d: &Discretization,
+    options: &SolverOptions,
+) -> [HalfProblem; 2] {
+    let force = SHARE * options.tolerance * d.scales().force_density;
+    let start = options.warm_start.as_ref().filter(|start| start.fits(d));
+    let [mu1, mu2] = d.tension();
+    let guess = |combine: &(dyn Fn(&StartingPoint, usize) -> f64 + Sync)| {
+        start.map(|start| hierarchy.to_rows(|a| combine(start, a)))
+    };
+    let gap = HalfProblem {
+        load: hierarchy.to_rows(|a| decoupled.gap_load(a)),
+        height: hierarchy.to_rows(|a| d.height()[a]),
+        lower: 0.0,
+        weight: hierarchy.to_rows(|a| decoupled.gap_tension() / (force * d.dual_area()[a])),
+        start: guess(&|start, a| start.displacement[0][a] - start.displacement[1][a]),
+    };
+    let sum = HalfProblem {
+        load: hierarchy.to_rows(|a| decoupled.sum_load(a)),
+        height: hierarchy.to_rows(|a| decoupled.sum_height(a)),
+        lower: f64::NEG_INFINITY,
+        weight: hierarchy.to_rows(|a| 1.0 / (force * d.dual_area()[a])),
+        start: guess(&|start, a| mu1 * start.displacement[0][a] + mu2 * start.displacement[1][a]),
+    };
+    [gap, sum]
+}
+
+/// Why the half stopped that has not been solved.
+fn worse(gap: &HalfSolution, sum: &HalfSolution) -> Status {
+    if gap.status == Status::Solved { sum.status } else { gap.status }
+}

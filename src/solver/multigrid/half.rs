@@ -1,0 +1,179 @@
+//! One half of the decoupled problem, by truncated nonsmooth Newton multigrid with nested iteration (Graeser, Kornhuber,
+//! J. Comput. Math. 27 (2009) 1).
+//!
+//! A cycle is a linear V-cycle on the coarser levels, truncated at the vertices in contact, then projected Gauss-Seidel on the
+//! finest level. Every part of it lowers the energy; where the correction has been cut off at the obstacle and the energy
+//! has not fallen, it is damped by an exact line search. Once the contact set stays, the cycles solve the linear system
+//! of a step of the active set method.
+
+use std::time::Instant;
+
+use super::correction::CoarseLevels;
+use super::sweep::{Bounded, Found, Iterate};
+use crate::qp::Status;
+use crate::solver::cholesky::NotFactored;
+use crate::solver::hierarchy::Hierarchy;
+
+/// Cycles on a coarser level: its error is then well below that of its discretisation.
+const COARSE_CYCLES: usize = 2;
+
+/// A method that has not lowered the largest residual to this fraction in [`PATIENCE`] cycles has arrived at rounding.
+const PROGRESS: f64 = 0.5;
+const PATIENCE: usize = 3;
+
+/// `K x - y = b`, `x >= lower`, `y >= 0`, `y'(x - lower) = 0` at the vertices that are not held. Vectors are over the rows of
+/// the finest level.
+pub(super) struct HalfProblem {
+    pub(super) load: Vec<f64>,
+    /// `x` at the vertices on the boundary.
+    pub(super) height: Vec<f64>,
+    /// Zero for the gap; minus infinity for the sum, which has no obstacle.
+    pub(super) lower: f64,
+    /// What makes of a residual a fraction of the tolerance.
+    pub(super) weight: Vec<f64>,
+    /// A guess to start from in place of nested iteration.
+    pub(super) start: Option<Vec<f64>>,
+}
+
+/// When to stop although the tolerance is not reached.
+#[derive(Clone, Copy)]
+pub(super) struct Limits {
+    /// Cycles on the finest level.
+    pub(super) cycles: usize,
+    pub(super) deadline: Option<Instant>,
+}
+
+/// The last iterate, over the rows of the finest level.
+pub(super) struct HalfSolution {
+    pub(super) x: Vec<f64>,
+    /// `K x - b` where `x` is at its bound, zero elsewhere.
+    pub(super) y: Vec<f64>,
+    /// Cycles on the finest level.
+    pub(super) cycles: usize,
+    pub(super) status: Status,
+    /// The energies of the iterates on the finest level.
+    pub(super) energies: Vec<f64>,
+}
+
+/// Solves, from the coarsest level to the finest.
+pub(super) fn solve(
+    hierarchy: &Hierarchy,
+    problem: HalfProblem,
+    limits: &Limits,
+) -> Result<HalfSolution, NotFactored> {
+    let HalfProblem { load, height, lower, weight, start } = problem;
+    let (loads, heights) = hierarchy.lifted(load, height);
+    let mut coarse = CoarseLevels::new(hierarchy)?;
+    let unweighted = vec![1.0; hierarchy.levels()[hierarchy.finest() - 1].pattern.rows()];
+    let on_level = |l: usize| {
+        let weight = if l == hierarchy.finest() { &weight } else { &unweighted };
+        Bounded { level: &hierarchy.levels()[l], b: &loads[l], lower, weight }
+    };
+    let x = match start {
+        Some(start) => on_level(hierarchy.finest()).feasible(start),
+        None => {
+            let mut x = vec![0.0; hierarchy.levels()[1].pattern.rows()];
+            for l in 1..hierarchy.finest() {
+                let limits = Limits { cycles: COARSE_CYCLES, ..*limits };
+                x = Cycles::new(l, on_level(l), x, &mut coarse)?.run(&limits, 0.0)?.x;
+                x = prolonged(hierarchy, l, x, &heights[l], lower);
+            }
+            x
+        }
+    };
+    Cycles::new(hierarchy.finest(), on_level(hierarchy.finest()), x, &mut coarse)?.run(limits, 1.0)
+}
+
+/// A function on level `l` with its boundary values, on the level above with zero ones.
+fn prolonged(hierarchy: &Hierarchy, l: usize, mut x: Vec<f64>, height: &[f64], lower: f64) -> Vec<f64> {
+    let [coarse, fine] = [l, l + 1].map(|l| &hierarchy.levels()[l]);
+    for (i, x) in x.iter_mut().enumerate().filter(|&(i, _)| coarse.is_held(i)) {
+        *x = height[i];
+    }
+    let at = |i: usize| if fine.is_held(i) { 0.0 } else { fine.transfer.prolong(i, &x).max(lower) };
+    (0..fine.pattern.rows()).map(at).collect()
+}
+
+/// The cycles whose finest level is this one.
+struct Cycles<'c, 'h> {
+    finest: usize,
+    bounded: Bounded<'c>,
+    coarse: &'c mut CoarseLevels<'h>,
+    x: Vec<f64>,
+    /// The iterate before.
+    last: Vec<f64>,
+    frozen: Vec<bool>,
+    changed: Vec<u32>,
+}
+
+impl<'c, 'h> Cycles<'c, 'h> {
+    fn new(
+        finest: usize,
+        bounded: Bounded<'c>,
+        x: Vec<f64>,
+        coarse: &'c mut CoarseLevels<'h>,
+    ) -> Result<Self, NotFactored> {
+        coarse.restart(finest)?;
+        let rows = x.len();
+        Ok(Self {
+            finest,
+            bounded,
+            coarse,
+            x,
+            last: vec![0.0; rows],
+            frozen: vec![false; rows],
+            changed: Vec::new(),
+        })
+    }
+
+    /// Until the weighted residual is at most `tolerance` and the contact set stays.
+    fn run(mut self, limits: &Limits, tolerance: f64) -> Result<HalfSolution, NotFactored> {
+        let mut history = vec![self.relax(false)];
+        let status = loop {
+            let cycles = history.len() - 1;
+            let found = history[cycles];
+            if found.violation <= tolerance && (cycles == 0 || self.changed.is_empty()) {
+                break Status::Solved;
+            }
+            if cycles >= limits.cycles {
+                break Status::IterationLimit;
+            }
+            if cycles >= PATIENCE && !(found.violation < PROGRESS * history[cycles - PATIENCE].violation) {
+                break Status::Stalled;
+            }
+            if limits.deadline.is_some_and(|deadline| Instant::now() > deadline) {
+                break Status::TimeLimit;
+            }
+            self.coarse.solve(self.finest, &self.frozen, &self.changed)?;
+            self.changed.clear();
+            history.push(self.correct(found.energy));
+        };
+        let y = self.bounded.multiplier(&self.x);
+        let energies = history.iter().map(|found| found.energy).collect();
+        Ok(HalfSolution { x: self.x, y, cycles: history.len() - 1, status, energies })
+    }
+
+    /// Adds the correction and relaxes; damps it where that has not lowered the energy.
+    fn correct(&mut self, energy: f64) -> Found {
+        let found = self.relax(true);
+        if found.cut == 0 || found.energy <= energy {
+            return found;
+        }
+        std::mem::swap(&mut self.x, &mut self.last);
+        self.bounded.line_search(&mut self.x, self.coarse.correction(self.finest));
+        self.relax(false)
+    }
+
+    /// The next iterate; the one before is kept.
+    fn relax(&mut self, corrected: bool) -> Found {
+        std::mem::swap(&mut self.x, &mut self.last);
+        let (correction, functional) = self.coarse.exchange(self.finest);
+        let iterate = Iterate {
+            x: &mut self.x,
+            frozen: &mut self.frozen,
+            changed: &mut self.changed,
+            coarse: functional,
+        };
+        self.bounded.correct_and_relax(&self.last, corrected.then_some(correction), iterate)
+    }
+}

@@ -1,0 +1,228 @@
+//! The sweeps of a cycle over one level, fused: what they read stays in the cache between the stages.
+//!
+//! A window of rows sees its two neighbours only. So a stage may follow the one before it at the distance of one window, in
+//! one pass over the memory, with the same result as a pass for each stage.
+
+use std::ops::Range;
+
+use crate::solver::hierarchy::{Level, Values};
+
+/// Sweeps between two corrections on the finest level.
+const SWEEPS: usize = 2;
+
+/// Sweeps before and after the correction on a coarser level: they cost little there, and save cycles.
+const COARSE_SWEEPS: usize = 2;
+
+/// The problem on a level: minimise `1/2 x'A x - b'x` subject to `x >= lower`.
+#[derive(Clone, Copy)]
+pub(super) struct Bounded<'a> {
+    pub(super) level: &'a Level,
+    pub(super) b: &'a [f64],
+    /// Zero for the gap, minus infinity without an obstacle.
+    pub(super) lower: f64,
+    /// What makes of a residual a fraction of the tolerance.
+    pub(super) weight: &'a [f64],
+}
+
+/// What a sweep over the finest level of a cycle has found.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Found {
+    /// The largest weighted residual of the optimality conditions.
+    pub(super) violation: f64,
+    /// `1/2 x'A x - b'x`.
+    pub(super) energy: f64,
+    /// How often the correction was cut off at the bound.
+    pub(super) cut: usize,
+}
+
+/// Where a sweep over the finest level of a cycle leaves its results.
+pub(super) struct Iterate<'a> {
+    pub(super) x: &'a mut [f64],
+    /// Whether `x` is at its bound.
+    pub(super) frozen: &'a mut [bool],
+    /// The vertices where that has changed.
+    pub(super) changed: &'a mut Vec<u32>,
+    /// `P' r` of the residual where `x` is free.
+    pub(super) coarse: &'a mut [f64],
+}
+
+impl Bounded<'_> {
+    /// `x = max(lower, old + P c)` where `old` is free, projected Gauss-Seidel sweeps through the colours downwards and
+    /// upwards, the residual and its restriction. (Rows of the last colour have no residual then.)
+    pub(super) fn correct_and_relax(
+        &self,
+        old: &[f64],
+        correction: Option<&[f64]>,
+        iterate: Iterate,
+    ) -> Found {
+        let Iterate { x, frozen, changed, coarse } = iterate;
+        let coloring = &self.level.coloring;
+        let colors = coloring.colors();
+        let order: Vec<usize> = (0..SWEEPS).flat_map(|_| 0..colors).collect();
+        coarse.fill(0.0);
+        let mut found = Found::default();
+        coloring.pipeline(order.len() + 2, |stage, window| {
+            if stage == 0 {
+                found.cut += self.correct(coloring.window(window), old, correction, x);
+            } else if stage <= order.len() {
+                self.relax(coloring.rows(window, order[stage - 1]), x);
+            } else {
+                let settled = coloring.window(window).start..coloring.rows(window, colors - 1).start;
+                self.settle(settled, x, coarse, &mut found);
+                found.energy += self.freeze(coloring.window(window), x, frozen, changed);
+            }
+        });
+        found
+    }
+
+    /// The correction of some rows: how often it was cut off.
+    fn correct(&self, rows: Range<usize>, old: &[f64], correction: Option<&[f64]>, x: &mut [f64]) -> usize {
+        let Some(correction) = correction else {
+            x[rows.clone()].copy_from_slice(&old[rows]);
+            return 0;
+        };
+        let mut cut = 0;
+        for i in rows {
+            let (corrected, is_cut) = self.corrected(i, old[i], correction);
+            cut += usize::from(is_cut);
+            x[i] = corrected;
+        }
+        cut
+    }
+
+    /// `max(lower, old + P c)` where `old` is free, and whether that was cut off.
+    #[inline(always)]
+    fn corrected(&self, i: usize, old: f64, correction: &[f64]) -> (f64, bool) {
+        if old <= self.lower {
+            return (old, false);
+        }
+        let corrected = old + self.level.transfer.prolong(i, correction);
+        (larger(corrected, self.lower), corrected < self.lower)
+    }
+
+    fn relax(&self, rows: Range<usize>, x: &mut [f64]) {
+        let Level { pattern, values, .. } = self.level;
+        for i in rows {
+            let off = values.off_diagonal_product(pattern, i, x);
+            x[i] = larger((self.b[i] - off) * values.inverse[i], self.lower);
+        }
+    }
+
+    /// Residual, energy and restriction of some rows.
+    fn settle(&self, rows: Range<usize>, x: &[f64], coarse: &mut [f64], found: &mut Found) {
+        for i in rows {
+            let r = self.residual(i, x);
+            found.energy -= 0.5 * x[i] * r;
+            if x[i] <= self.lower {
+                found.violation = larger(found.violation, r * self.weight[i]);
+            } else {
+                found.violation = larger(found.violation, r.abs() * self.weight[i]);
+                self.level.transfer.spread(i, r, coarse);
+            }
+        }
+    }
+
+    /// Which rows are at the bound; returns their part of the energy as far as the residual has none in it.
+    fn freeze(&self, rows: Range<usize>, x: &[f64], frozen: &mut [bool], changed: &mut Vec<u32>) -> f64 {
+        let mut energy = 0.0;
+        for i in rows {
+            energy -= 0.5 * x[i] * self.b[i];
+            let bound = x[i] <= self.lower;
+            if bound != frozen[i] {
+                frozen[i] = bound;
+                changed.push(i as u32);
+            }
+        }
+        energy
+    }
+
+    /// Zero at held vertices and nowhere below the bound.
+    pub(super) fn feasible(&self, mut x: Vec<f64>) -> Vec<f64> {
+        for (i, x) in x.iter_mut().enumerate() {
+            *x = if self.level.is_held(i) { 0.0 } else { larger(*x, self.lower) };
+        }
+        x
+    }
+
+    /// `max(0, A x - b)` where `x` is at its bound, zero elsewhere.
+    pub(super) fn multiplier(&self, x: &[f64]) -> Vec<f64> {
+        let at = |i: usize| if x[i] <= self.lower { larger(-self.residual(i, x), 0.0) } else { 0.0 };
+        (0..x.len()).map(at).collect()
+    }
+
+    /// Adds the part of the correction, cut off at the bound, that lowers the energy most: `t d`, `0 <= t <= 1`.
+    pub(super) fn line_search(&self, x: &mut [f64], correction: &[f64]) {
+        let d: Vec<f64> = (0..x.len()).map(|i| self.corrected(i, x[i], correction).0 - x[i]).collect();
+        let (mut slope, mut curvature) = (0.0, 0.0);
+        let Level { pattern, values, .. } = self.level;
+        for i in (0..x.len()).filter(|&i| d[i] != 0.0) {
+            slope += self.residual(i, x) * d[i];
+            curvature += (values.diagonal[i] * d[i] + values.off_diagonal_product(pattern, i, &d)) * d[i];
+        }
+        let step = if curvature > 0.0 { (slope / curvature).clamp(0.0, 1.0) } else { 0.0 };
+        for (x, d) in x.iter_mut().zip(d) {
+            *x = larger(*x + step * d, self.lower);
+        }
+    }
+
+    /// `(b - A x)_i`.
+    #[inline(always)]
+    fn residual(&self, i: usize, x: &[f64]) -> f64 {
+        let Level { pattern, values, .. } = self.level;
+        self.b[i] - values.diagonal[i] * x[i] - values.off_diagonal_product(pattern, i, x)
+    }
+}
+
+/// On a coarser level: Gauss-Seidel sweeps from zero for `A x = b`, the residual and its restriction.
+pub(super) fn descend(level: &Level, values: &Values, b: &[f64], x: &mut [f64], coarse: &mut [f64]) {
+    let Level { pattern, coloring, transfer, .. } = level;
+    let colors = coloring.colors();
+    let relaxations = COARSE_SWEEPS * colors;
+    x.fill(0.0);
+    coarse.fill(0.0);
+    coloring.pipeline(relaxations + 1, |stage, window| {
+        if stage == 0 {
+            for i in coloring.rows(window, 0) {
+                x[i] = b[i] * values.inverse[i];
+            }
+        } else if stage < relaxations {
+            relax(level, values, b, coloring.rows(window, stage % colors), x);
+        } else {
+            // The last colour has no residual.
+            for i in coloring.window(window).start..coloring.rows(window, colors - 1).start {
+                let off = values.off_diagonal_product(pattern, i, x);
+                transfer.spread(i, b[i] - values.diagonal[i] * x[i] - off, coarse);
+            }
+        }
+    });
+}
+
+/// On a coarser level: the correction from the level below, and Gauss-Seidel sweeps.
+pub(super) fn ascend(level: &Level, values: &Values, b: &[f64], correction: &[f64], x: &mut [f64]) {
+    let Level { coloring, transfer, .. } = level;
+    let colors = coloring.colors();
+    coloring.pipeline(COARSE_SWEEPS * colors + 1, |stage, window| {
+        if stage == 0 {
+            for i in coloring.window(window) {
+                if values.inverse[i] != 0.0 {
+                    x[i] += transfer.prolong(i, correction);
+                }
+            }
+        } else {
+            relax(level, values, b, coloring.rows(window, (stage - 1) % colors), x);
+        }
+    });
+}
+
+fn relax(level: &Level, values: &Values, b: &[f64], rows: Range<usize>, x: &mut [f64]) {
+    for i in rows {
+        let off = values.off_diagonal_product(&level.pattern, i, x);
+        x[i] = (b[i] - off) * values.inverse[i];
+    }
+}
+
+/// The larger of two numbers that are not NaN; a NaN as the first one is kept.
+#[inline(always)]
+fn larger(a: f64, b: f64) -> f64 {
+    if a < b { b } else { a }
+}

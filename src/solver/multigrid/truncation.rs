@@ -1,0 +1,76 @@
+//! The matrices of the coarser levels, truncated: hat functions that reach over vertices in contact are cut off there.
+//!
+//! With `T` the identity but for zeros at the vertices in contact, the levels have `P' T A T P` in place of `P' A P` (Graeser,
+//! Kornhuber, J. Comput. Math. 27 (2009) 1). Only rows near the rim of the contact set differ from what is known, so a change
+//! of the set costs as much as it is long.
+
+use crate::solver::hierarchy::{Hierarchy, RowSum, Values};
+
+/// The truncated matrices below a finest level.
+pub(super) struct Truncation<'h> {
+    hierarchy: &'h Hierarchy,
+    /// For each level the matrix that holds now.
+    values: Vec<Values>,
+    sums: Vec<RowSum>,
+    marked: Vec<Vec<bool>>,
+}
+
+impl<'h> Truncation<'h> {
+    /// Nothing is truncated.
+    pub(super) fn new(hierarchy: &'h Hierarchy) -> Self {
+        let coarser = &hierarchy.levels()[..hierarchy.finest()];
+        let sizes = || hierarchy.levels().iter().map(|level| level.pattern.rows());
+        Self {
+            hierarchy,
+            values: coarser.iter().map(|level| level.values.clone()).collect(),
+            sums: sizes().map(RowSum::new).collect(),
+            marked: sizes().map(|rows| vec![false; rows]).collect(),
+        }
+    }
+
+    /// The matrix of a coarser level.
+    pub(super) fn values(&self, level: usize) -> &Values {
+        &self.values[level]
+    }
+
+    /// Forgets what was truncated below `finest`.
+    pub(super) fn reset(&mut self, finest: usize) {
+        for (values, level) in self.values[..finest].iter_mut().zip(self.hierarchy.levels()) {
+            values.clone_from(&level.values);
+        }
+    }
+
+    /// Follows the contact set of the level `finest`, which has `changed`. Returns whether that has reached level 0.
+    pub(super) fn update(&mut self, finest: usize, frozen: &[bool], changed: &[u32]) -> bool {
+        let top = &self.hierarchy.levels()[finest];
+        // An entry of the matrix is cut off with its row or its column.
+        let neighbours = changed.iter().flat_map(|&i| top.pattern.row(i as usize));
+        let mut rows = distinct(&mut self.marked[finest], changed.iter().chain(neighbours).copied());
+        for l in (0..finest).rev() {
+            let fine = &self.hierarchy.levels()[l + 1];
+            let parents = rows.iter().flat_map(|&i| fine.transfer.parents(i as usize)).map(|(a, _)| a as u32);
+            rows = distinct(&mut self.marked[l], parents);
+            let (below, above) = self.values.split_at_mut(l + 1);
+            let pattern = &self.hierarchy.levels()[l].pattern;
+            for &a in rows.iter().filter(|&&a| !self.hierarchy.levels()[l].is_held(a as usize)) {
+                let sum = &mut self.sums[l];
+                if l + 1 == finest {
+                    sum.gather((&fine.pattern, &fine.values), &fine.transfer, a as usize, |i| frozen[i]);
+                } else {
+                    sum.gather((&fine.pattern, &above[0]), &fine.transfer, a as usize, |_| false);
+                }
+                below[l].set_row(pattern, a as usize, sum);
+            }
+        }
+        !rows.is_empty()
+    }
+}
+
+/// Each row once.
+fn distinct(marked: &mut [bool], rows: impl Iterator<Item = u32>) -> Vec<u32> {
+    let found: Vec<u32> = rows.filter(|&row| !std::mem::replace(&mut marked[row as usize], true)).collect();
+    for &row in &found {
+        marked[row as usize] = false;
+    }
+    found
+}
