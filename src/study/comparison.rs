@@ -64,8 +64,9 @@ pub struct Place<'a> {
 }
 
 impl Comparison {
-    /// A comparison of solvers, each with the name that it has in the rows. All get the same options; with a time limit,
-    /// a solver that exceeds it is not tried on larger meshes of that problem.
+    /// A comparison of solvers, each with the name that it has in the rows. All get the same options. A solver that
+    /// exceeds their time limit, the certificate included, has a row that is not certified, and is not tried on larger
+    /// meshes of that problem.
     pub fn new(solvers: Vec<(String, Box<dyn ContactSolver>)>, options: SolverOptions) -> Self {
         let contestant = |(name, solver)| Contestant { name, solver, exceeded: BTreeMap::new() };
         Self { contestants: solvers.into_iter().map(contestant).collect(), options, repeat: REPEAT }
@@ -101,10 +102,17 @@ impl Comparison {
         }
         let product = CsrProduct::new(d.stiffness());
         let before = product.seconds();
-        let fastest = contestant.fastest(d, &self.options, self.repeat, &blank);
+        let mut fastest = contestant.fastest(d, &self.options, self.repeat, &blank);
         let work_unit = before.min(product.seconds());
         if fastest.exceeds(&self.options) {
             contestant.exceeded.insert(place.problem.into(), fastest.vertices);
+            // Also when what it stopped at could be repaired afterwards.
+            fastest = Row {
+                status: Status::TimeLimit.as_str().into(),
+                certified: false,
+                contact_vertices: None,
+                ..fastest
+            };
         }
         Row {
             work_unit_seconds: Some(work_unit),

@@ -25,7 +25,7 @@ pub struct Row {
     pub threads: Option<usize>,
     /// What the solver says of its result; `skipped`, or `error: ...`.
     pub status: String,
-    /// Whether the residuals, recomputed, are within the tolerance.
+    /// Whether the residuals, recomputed, are within the tolerance, and the time is within its limit.
     #[serde(deserialize_with = "flag")]
     pub certified: bool,
     /// The largest residual.
