@@ -3,6 +3,7 @@
 //! Strings are parsed here and nowhere else. Exit codes: 0 certified; 1 ran, but not certified; 2 bad input or usage.
 
 mod args;
+mod bench;
 mod case_file;
 mod cases;
 mod check;
@@ -64,6 +65,7 @@ fn run(command: &Command) -> Result<(), Failure> {
         Command::Solve(arguments) => solve::run(arguments),
         Command::Check(arguments) => check::run(arguments),
         Command::Converge(arguments) => converge::run(arguments),
+        Command::Bench(arguments) => bench::run(arguments),
         Command::Export(arguments) => export::run(arguments),
         Command::Cases(arguments) => cases::run(arguments),
     }

@@ -15,6 +15,8 @@ pub use dual::write_dual_vtu;
 pub use file::{WriteSeek, write_atomically};
 pub use flux::write_flux_vtu;
 pub use mesh_picture::{MeshPicture, MeshPictureError, render_mesh};
-pub use rates_picture::{RatesPicture, RatesPictureError, Series, render_rates};
+pub use rates_picture::{
+    RatesPicture, RatesPictureError, Series, Times, TimesPicture, render_rates, render_times,
+};
 pub use summary::{PolishSummary, ResidualSummary, Seconds, Summary};
 pub use vtu::write_vtu;

@@ -1,6 +1,6 @@
 //! The command line.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
@@ -8,6 +8,9 @@ use super::case_file::BackendName;
 
 /// Where results go when no folder is named: a folder of this one, called like the case file.
 const OUTPUT: &str = "out";
+
+/// Nobody waits longer for a solve, seconds: a year. Far larger numbers are no durations.
+const LONGEST: f64 = 365.0 * 86400.0;
 
 #[derive(Debug, Parser)]
 #[command(
@@ -36,6 +39,8 @@ pub(super) enum Command {
     Check(CheckArguments),
     /// Measure errors and rates on finer meshes, for a built-in case
     Converge(ConvergeArguments),
+    /// Time the solvers side by side, on a built-in family or a case
+    Bench(BenchArguments),
     /// Write the quadratic program of a case for other solvers
     Export(ExportArguments),
     /// List the built-in exact cases, or print one as a case file
@@ -85,6 +90,37 @@ pub(super) struct ConvergeArguments {
 }
 
 #[derive(Debug, Args)]
+pub(super) struct BenchArguments {
+    /// A case, refined level by level [default: a family on the square]
+    #[arg(value_name = "CASE.toml", conflicts_with = "sizes")]
+    pub(super) case: Option<PathBuf>,
+    /// Meshes of N x N cells
+    #[arg(long, value_name = "N,...", value_delimiter = ',', default_value = "64,128,256", value_parser = at_least(2))]
+    pub(super) sizes: Vec<usize>,
+    /// Meshes of the case, each one finer
+    #[arg(long, value_name = "N", default_value = "4", value_parser = at_least(1), requires = "case")]
+    pub(super) levels: usize,
+    /// Solvers [default: all of this build]
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    pub(super) solvers: Vec<BackendName>,
+    /// Seconds a solve may take
+    #[arg(long, value_name = "S", default_value = "60", value_parser = seconds, allow_negative_numbers = true)]
+    pub(super) time_limit: f64,
+    /// Also show rows of such a bench.csv; repeatable
+    #[arg(long, value_name = "FILE.csv")]
+    pub(super) merge: Vec<PathBuf>,
+    /// Measure nothing, show the rows of --merge
+    #[arg(long, requires = "merge")]
+    pub(super) no_run: bool,
+    /// Folder for results [default: out/CASE, out/bench]
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: Option<PathBuf>,
+    /// No output on the terminal but errors
+    #[arg(long, short)]
+    pub(super) quiet: bool,
+}
+
+#[derive(Debug, Args)]
 pub(super) struct ExportArguments {
     #[command(flatten)]
     pub(super) case: CaseArguments,
@@ -129,9 +165,14 @@ pub(super) struct CaseArguments {
 impl CaseArguments {
     /// The folder for results: the one named, else `out/` and the name of the case file without its ending.
     pub(super) fn output_folder(&self, named: Option<&PathBuf>) -> PathBuf {
-        let stem = self.path.file_stem().unwrap_or(self.path.as_os_str());
-        named.cloned().unwrap_or_else(|| PathBuf::from(OUTPUT).join(stem))
+        output_folder(&self.path, named)
     }
+}
+
+/// The folder for results: the one named, else `out/` and the name of `case` without its ending.
+pub(super) fn output_folder(case: &Path, named: Option<&PathBuf>) -> PathBuf {
+    let stem = case.file_stem().unwrap_or(case.as_os_str());
+    named.cloned().unwrap_or_else(|| PathBuf::from(OUTPUT).join(stem))
 }
 
 fn tolerance(text: &str) -> Result<f64, String> {
@@ -141,6 +182,18 @@ fn tolerance(text: &str) -> Result<f64, String> {
 
 fn refinements(text: &str) -> Result<u32, String> {
     text.parse().map_err(|_| "choose a whole number, at least 0".into())
+}
+
+fn at_least(least: usize) -> impl Fn(&str) -> Result<usize, String> + Clone + Send + Sync + 'static {
+    move |text| {
+        let value = text.trim().parse().ok().filter(|&value| value >= least);
+        value.ok_or_else(|| format!("choose a whole number, at least {least}"))
+    }
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    let value = text.parse().ok().filter(|&value: &f64| value > 0.0 && value <= LONGEST);
+    value.ok_or_else(|| format!("choose seconds above 0, at most {LONGEST:.0}"))
 }
 
 /// What clap has to say, without its paragraphs on usage and on arguments that begin with a hyphen.

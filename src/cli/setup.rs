@@ -66,16 +66,22 @@ fn make_mesh(name: &str, case: &CaseFile, further: usize) -> Result<MeshFamily, 
         }
     };
     let refinements = case.refine.saturating_add(further);
-    // Each refinement makes four times as many.
-    if !(family.mesh().points().len() as f64 * 4f64.powf(refinements as f64) <= MAX_VERTICES) {
-        return Err(Failure::Input(format!(
-            "{name}: {refinements} refinements lead beyond {MAX_VERTICES:.0e} vertices: refine less"
-        )));
-    }
+    check_refinements(name, &family, refinements)?;
     for _ in 0..refinements {
         family.refine().map_err(|error| bad_mesh(&error))?;
     }
     Ok(family)
+}
+
+/// Refuses refinements that lead beyond what can be stored.
+pub(super) fn check_refinements(name: &str, family: &MeshFamily, refinements: usize) -> Result<(), Failure> {
+    // Each refinement makes four times as many.
+    if family.mesh().points().len() as f64 * 4f64.powf(refinements as f64) <= MAX_VERTICES {
+        return Ok(());
+    }
+    Err(Failure::Input(format!(
+        "{name}: {refinements} refinements lead beyond {MAX_VERTICES:.0e} vertices: refine less"
+    )))
 }
 
 fn cannot_read(case: &str, mesh: &Path, error: &ReadError) -> Failure {

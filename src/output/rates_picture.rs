@@ -1,9 +1,12 @@
-//! Errors against the mesh size, on two logarithmic axes.
+//! Errors against the mesh size, and seconds against vertices, on two logarithmic axes.
 
 mod curve;
 mod labels;
 mod marker;
 mod slopes;
+mod times;
+
+pub use times::{Times, TimesPicture, render_times};
 
 use super::drawing::canvas::{Anchor, Canvas};
 use super::drawing::color::{CURVES, INK, PAPER, RULE, Rgb};
@@ -81,14 +84,38 @@ pub fn render_rates(picture: &RatesPicture) -> Result<Vec<u8>, RatesPictureError
     }
     let curves: Vec<Curve> =
         picture.series.iter().map(|series| Curve::new(picture.h, series.values)).collect();
+    let names: Vec<&str> = picture.series.iter().map(|series| series.name).collect();
+    let axes = Axes { names: [picture.abscissa, "error"], slope: "last slope", slopes: picture.slopes };
+    let slopes: Vec<Option<f64>> = curves.iter().map(Curve::last_slope).collect();
+    Ok(draw(picture.title, &axes, &names, &curves, &slopes)?)
+}
+
+/// What stands at the axes.
+struct Axes<'a> {
+    /// The names of the abscissa and the ordinate.
+    names: [&'a str; 2],
+    /// The heading of the curves' slopes.
+    slope: &'a str,
+    /// The slopes to compare with.
+    slopes: &'a [f64],
+}
+
+/// The picture of curves with their names and slopes.
+fn draw(
+    title: &str,
+    axes: &Axes,
+    names: &[&str],
+    curves: &[Curve],
+    slopes: &[Option<f64>],
+) -> Result<Vec<u8>, png::EncodingError> {
     let mut canvas = Canvas::new(SIZE);
-    let labels = Labels::new(&canvas, picture.series, &curves);
-    let plot = Plot::new(&curves, picture.slopes, labels.left());
-    heading(&mut canvas, picture.title);
-    plot.axes(&mut canvas, picture.abscissa);
-    labels.draw(&mut canvas, &plot, &curves);
-    plot.draw(&mut canvas, &curves);
-    Ok(canvas.encode()?)
+    let labels = Labels::new(&canvas, names, axes.slope, slopes);
+    let plot = Plot::new(curves, axes.slopes, labels.left());
+    heading(&mut canvas, title);
+    plot.axes(&mut canvas, axes.names);
+    labels.draw(&mut canvas, &plot, curves);
+    plot.draw(&mut canvas, curves);
+    canvas.encode()
 }
 
 /// The colour of a curve: beside its marker, what tells it from the others.
@@ -121,7 +148,7 @@ impl Plot {
         self.frame.at([self.x.place(x), self.y.place(y)])
     }
 
-    fn axes(&self, canvas: &mut Canvas, abscissa: &str) {
+    fn axes(&self, canvas: &mut Canvas, [abscissa, ordinate]: [&str; 2]) {
         let (frame, [x, y]) = (&self.frame, [self.x.ticks(6), self.y.ticks(9)]);
         frame.rules_at(canvas, &y);
         for tick in &x {
@@ -134,7 +161,7 @@ impl Plot {
         frame.left_ticks(canvas, &y);
         let below = [frame.left + frame.width / 2.0, frame.bottom() + 66.0];
         canvas.text(abscissa, below, NORMAL, INK, Anchor::Middle);
-        canvas.text("error", [frame.left - 14.0, frame.top - 34.0], NORMAL, INK, Anchor::Right);
+        canvas.text(ordinate, [frame.left - 14.0, frame.top - 34.0], NORMAL, INK, Anchor::Right);
     }
 
     fn draw(&self, canvas: &mut Canvas, curves: &[Curve]) {

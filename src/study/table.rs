@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::exponent;
+
 /// One level: a mesh and the errors of the solution on it. Written as a row of `summary.csv`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct LevelErrors {
@@ -70,13 +72,7 @@ pub fn rate(measure: Measure, coarse: &LevelErrors, fine: &LevelErrors) -> Optio
 /// The order of an error over all levels: the slope of the line through `(ln h, ln error)` by least squares; `None` with
 /// fewer than two levels, or when an error is zero.
 pub fn fitted_rate(measure: Measure, levels: &[LevelErrors]) -> Option<f64> {
-    let points: Vec<[f64; 2]> = levels.iter().map(|level| [level.h.ln(), (measure.of)(level).ln()]).collect();
-    let mean = |axis: usize| points.iter().map(|point| point[axis]).sum::<f64>() / points.len() as f64;
-    let [mean_h, mean_error] = [mean(0), mean(1)];
-    let covariance: f64 = points.iter().map(|[h, error]| (h - mean_h) * (error - mean_error)).sum();
-    let variance: f64 = points.iter().map(|[h, _]| (h - mean_h).powi(2)).sum();
-    let rate = covariance / variance;
-    rate.is_finite().then_some(rate)
+    exponent(levels.iter().map(|level| [level.h, (measure.of)(level)]))
 }
 
 /// The levels as a Markdown table: each error with its rate from the level before, and over all levels.

@@ -5,6 +5,8 @@ mod common;
 mod backends;
 #[cfg(feature = "cli")]
 mod bad_input;
+#[cfg(feature = "cli")]
+mod bench;
 mod custom_backend;
 mod exact;
 mod layers;

@@ -75,7 +75,7 @@ impl From<Output> for Run {
 
 impl Run {
     /// The standard output of a run that succeeded without a word on standard error.
-    fn success(self) -> String {
+    pub fn success(self) -> String {
         assert_eq!((self.code, self.stderr.as_str()), (Some(0), ""), "{}", self.stdout);
         self.stdout
     }
@@ -103,7 +103,8 @@ fn summary(folder: &Path) -> Value {
     serde_json::from_str(&text).expect("it is JSON")
 }
 
-fn lines_too_long(text: &str) -> Vec<&str> {
+/// Lines that do not fit the terminal.
+pub fn lines_too_long(text: &str) -> Vec<&str> {
     text.lines().filter(|line| line.chars().count() > COLUMNS).collect()
 }
 
@@ -111,7 +112,7 @@ fn lines_too_long(text: &str) -> Vec<&str> {
 fn help_names_every_command_and_fits_the_terminal() {
     let folder = tempdir().unwrap();
     let help = run(folder.path(), "--help").success();
-    for command in ["solve", "check", "converge", "export", "cases"] {
+    for command in ["solve", "check", "converge", "bench", "export", "cases"] {
         assert!(help.contains(&format!("\n  {command} ")), "{command}: {help}");
         let of_command = run(folder.path(), &format!("{command} --help")).success();
         assert!(of_command.contains(&format!("Usage: membranes {command}")), "{of_command}");

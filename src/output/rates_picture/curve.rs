@@ -13,6 +13,14 @@ impl Curve {
         Curve(h.iter().zip(values).map(|(&h, &value)| Some([logarithm(h)?, logarithm(value)?])).collect())
     }
 
+    /// The curve through points in the order of their abscissae; those that have no logarithm are left out.
+    pub(super) fn through(points: &[[f64; 2]]) -> Curve {
+        let mut points = points.to_vec();
+        points.sort_by(|p, q| p[0].total_cmp(&q[0]));
+        let [x, y] = [0, 1].map(|axis| points.iter().map(|point| point[axis]).collect::<Vec<f64>>());
+        Curve(Curve::new(&x, &y).points().map(Some).collect())
+    }
+
     /// The points that can be drawn.
     pub(super) fn points(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
         self.0.iter().flatten().copied()

@@ -1,7 +1,7 @@
-//! The names of the curves with their last slopes, at the curves' ends.
+//! The names of the curves with their slopes, at the curves' ends.
 
 use super::curve::Curve;
-use super::{MARKER, Plot, SIZE, Series, color, marker};
+use super::{MARKER, Plot, SIZE, color, marker};
 use crate::output::drawing::canvas::{Anchor, Canvas};
 use crate::output::drawing::color::{INK, PAPER, mix};
 use crate::output::drawing::frame::{NORMAL, SMALL};
@@ -20,25 +20,25 @@ const LINE: f64 = 36.0;
 /// Leaders begin at a curve that ends right of this part of the plot, else at the edge of the plot.
 const NEAR_THE_END: f64 = 0.85;
 
-const SLOPES: &str = "last slope";
-
 /// A column of names and one of slopes.
 pub(super) struct Labels {
     names: Vec<String>,
     slopes: Vec<String>,
+    /// What stands over the slopes.
+    heading: String,
     left: f64,
 }
 
 impl Labels {
     /// The labels, against the right edge of the picture.
-    pub(super) fn new(canvas: &Canvas, series: &[Series], curves: &[Curve]) -> Labels {
-        let names: Vec<String> = series.iter().map(|series| shortened(canvas, series.name)).collect();
-        let slope = |curve: &Curve| curve.last_slope().map_or_else(|| "–".to_owned(), decimal);
-        let slopes: Vec<String> = curves.iter().map(slope).collect();
+    pub(super) fn new(canvas: &Canvas, names: &[&str], heading: &str, slopes: &[Option<f64>]) -> Labels {
+        let names: Vec<String> = names.iter().map(|name| shortened(canvas, name)).collect();
+        let slopes: Vec<String> =
+            slopes.iter().map(|slope| slope.map_or_else(|| "–".to_owned(), decimal)).collect();
         let widest = |texts: &[String]| texts.iter().map(|t| canvas.width(t, NORMAL)).fold(0.0, f64::max);
-        let columns = widest(&names) + GAP + widest(&slopes).max(canvas.width(SLOPES, SMALL));
+        let columns = widest(&names) + GAP + widest(&slopes).max(canvas.width(heading, SMALL));
         let left = SIZE[0] as f64 - GAP - columns - NAME - LEADER;
-        Labels { names, slopes, left }
+        Labels { names, slopes, heading: heading.to_owned(), left }
     }
 
     /// Where the plot ends.
@@ -68,7 +68,7 @@ impl Labels {
             canvas.text(&self.slopes[k], [right, y], NORMAL, INK, Anchor::Right);
         }
         if !self.names.is_empty() {
-            canvas.text(SLOPES, [right, plot.frame.top - 34.0], SMALL, INK, Anchor::Right);
+            canvas.text(&self.heading, [right, plot.frame.top - 34.0], SMALL, INK, Anchor::Right);
         }
     }
 }

@@ -43,9 +43,8 @@ fn the_picture_has_its_size_and_the_same_bytes_for_the_same_data() {
 #[test]
 fn markers_lie_at_the_logarithms_of_the_values() {
     let values = power(3.0, 1.5);
-    let series = [Series { name: "error", values: &values }];
     let curves = [Curve::new(&H, &values)];
-    let labels = Labels::new(&Canvas::new(SIZE), &series, &curves);
+    let labels = Labels::new(&Canvas::new(SIZE), &["error"], "last slope", &[curves[0].last_slope()]);
     let plot = Plot::new(&curves, &[], labels.left());
     let picture = image(&H, &[&values], &[]);
     for (h, value) in H.iter().zip(values) {
@@ -208,4 +207,29 @@ fn a_wrong_length_is_an_error_in_one_line() {
     assert!(message.contains("has 3 values for 5 levels"), "{message}");
     assert_eq!(message.lines().count(), 1);
     assert!(draw(&[1.0; 5]).is_ok());
+}
+
+#[test]
+fn a_curve_of_times_goes_over_gaps_in_the_order_of_its_vertices() {
+    let curve = Curve::through(&[[1e4, 4.0], [1e2, 1.0], [1e3, f64::NAN], [0.0, 1.0]]);
+    let segments: Vec<[[f64; 2]; 2]> = curve.segments().collect();
+    assert_eq!(segments, [[[2.0, 0.0], [4.0, 4f64.log10()]]]);
+    assert_eq!(Curve::new(&[1e2, 1e3, 1e4], &[1.0, f64::NAN, 4.0]).segments().count(), 0, "levels have gaps");
+}
+
+#[test]
+fn times_are_drawn_with_their_fitted_slopes() {
+    let (steep, flat) = ([[1e2, 0.1], [1e3, 3.0], [1e4, 100.0]], [[1e2, 0.1], [1e3, 1.0], [1e4, 10.0]]);
+    let draw = |points| {
+        let curves = [Times { name: "solver", points }];
+        render_times(&TimesPicture { title: "", curves: &curves, slopes: &[1.0, 1.5] }).unwrap()
+    };
+    let picture = Image::decode(&draw(&steep));
+    assert_eq!([picture.width, picture.height], SIZE);
+    assert!(picture.count(CURVES[0]) > 1000);
+    assert!(draw(&steep) != draw(&flat) && draw(&steep) == draw(&steep));
+    assert_eq!(
+        Image::decode(&draw(&[])).count(CURVES[0]),
+        Image::decode(&draw(&[[1.0, 0.0]])).count(CURVES[0])
+    );
 }

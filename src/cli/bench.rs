@@ -1,0 +1,164 @@
+//! `membranes bench`: the solvers side by side.
+
+mod files;
+mod table;
+
+use std::path::PathBuf;
+
+use super::Failure;
+use super::args::{BenchArguments, CaseArguments, output_folder};
+use super::case_file::BackendName;
+use super::progress::Progress;
+use super::setup::{Setup, check_refinements, make_folder, solver};
+use super::terminal::{grouped, print};
+use crate::discretization::Discretization;
+use crate::mesh::{MAX_VERTICES, Mesh};
+use crate::problem::ContactProblem;
+use crate::solver::SolverOptions;
+use crate::study::comparison::{Comparison, Place, Row, SQUARE, square_mesh, square_problem};
+use files::{read_rows, write_results, write_rows};
+
+/// Where results go without a case file and without `--out`.
+const FAMILY: &str = "bench";
+
+pub(super) fn run(arguments: &BenchArguments) -> Result<(), Failure> {
+    let progress = Progress::new(arguments.quiet);
+    let mut bench = Bench::new(arguments, &progress)?;
+    match &arguments.case {
+        _ if arguments.no_run => bench.run_nothing()?,
+        None => bench.run_family(&arguments.sizes)?,
+        Some(path) => bench.run_case(path.clone(), arguments.levels)?,
+    }
+    let Bench { title, rows, measured, folder, .. } = bench;
+    write_results(&folder, &title, &rows)?;
+    drop(progress);
+    if !arguments.quiet {
+        print(&table::table(&title, &rows, &folder))?;
+    }
+    if arguments.no_run || rows[..measured].iter().any(|row| row.certified) {
+        return Ok(());
+    }
+    let remedy = "allow more time by --time-limit, or choose others by --solvers";
+    Err(Failure::NotCertified(format!("{title}: no solver has a certified solution; {remedy}")))
+}
+
+/// A comparison under way.
+struct Bench<'a> {
+    title: String,
+    solvers: Vec<BackendName>,
+    options: SolverOptions,
+    folder: PathBuf,
+    /// Those measured so far, before those of other files.
+    rows: Vec<Row>,
+    measured: usize,
+    progress: &'a Progress,
+}
+
+impl<'a> Bench<'a> {
+    /// Reads the rows of other files and makes the folder: what can fail does so before anything is measured.
+    fn new(arguments: &BenchArguments, progress: &'a Progress) -> Result<Self, Failure> {
+        let mut rows = Vec::new();
+        for path in &arguments.merge {
+            rows.extend(read_rows(path)?);
+        }
+        let built = || BackendName::ALL.into_iter().filter(|backend| backend.is_built()).collect();
+        let mut solvers = Vec::new();
+        for &backend in &arguments.solvers {
+            if !solvers.contains(&backend) {
+                solvers.push(backend);
+            }
+        }
+        let options = SolverOptions { time_limit: Some(arguments.time_limit), ..SolverOptions::default() };
+        Ok(Self {
+            title: "two membranes over the unit square".into(),
+            solvers: if solvers.is_empty() { built() } else { solvers },
+            options,
+            folder: output_folder(
+                arguments.case.as_deref().unwrap_or(FAMILY.as_ref()),
+                arguments.out.as_ref(),
+            ),
+            rows,
+            measured: 0,
+            progress,
+        })
+    }
+
+    fn comparison(&self) -> Comparison {
+        let contestant = |&name: &BackendName| (name.as_str().into(), solver(name));
+        Comparison::new(self.solvers.iter().map(contestant).collect(), self.options.clone())
+    }
+
+    fn run_nothing(&self) -> Result<(), Failure> {
+        make_folder(&self.folder)?;
+        write_rows(&self.folder, &self.rows)
+    }
+
+    /// The built-in family on meshes of these numbers of cells along a side, from the coarsest.
+    fn run_family(&mut self, sizes: &[usize]) -> Result<(), Failure> {
+        let bad_input = |error: &dyn std::fmt::Display| Failure::Input(format!("--sizes: {error}"));
+        let mut sizes = sizes.to_vec();
+        sizes.sort_unstable();
+        sizes.dedup();
+        if let Some(n) = sizes.iter().find(|&&n| !((n as f64 + 1.0).powi(2) <= MAX_VERTICES)) {
+            let message = format!("{n} x {n} cells have more than {MAX_VERTICES:.0e} vertices: choose fewer");
+            return Err(bad_input(&message));
+        }
+        let problem = square_problem().map_err(|error| bad_input(&error))?;
+        make_folder(&self.folder)?;
+        self.progress.steps(sizes.len() * self.solvers.len());
+        let mut comparison = self.comparison();
+        for n in sizes {
+            let mesh = square_mesh(n).map_err(|error| bad_input(&error))?;
+            self.measure(&mut comparison, SQUARE, n, &problem, &mesh)?;
+        }
+        Ok(())
+    }
+
+    /// A case on its mesh and its refinements.
+    fn run_case(&mut self, path: PathBuf, levels: usize) -> Result<(), Failure> {
+        let arguments = CaseArguments { path, refine: 0, quiet: false };
+        let Setup { name, case, mut family, .. } = Setup::new(&arguments, self.progress)?;
+        check_refinements(&name, &family, levels - 1)?;
+        self.title.clone_from(&case.title);
+        self.options.tolerance = case.solver.tolerance;
+        let stem = arguments.path.file_stem().unwrap_or(arguments.path.as_os_str());
+        let stem = stem.to_string_lossy();
+        make_folder(&self.folder)?;
+        self.progress.steps(levels * self.solvers.len());
+        let mut comparison = self.comparison();
+        for level in 0..levels {
+            if level > 0 {
+                family.refine().map_err(|error| Failure::Input(format!("{name}: [mesh]: {error}")))?;
+            }
+            self.measure(&mut comparison, &stem, level, &case.problem, family.mesh())?;
+        }
+        Ok(())
+    }
+
+    /// Runs all solvers on one mesh. After each, all rows are in the file: a long run may be stopped.
+    fn measure(
+        &mut self,
+        comparison: &mut Comparison,
+        name: &str,
+        n: usize,
+        problem: &ContactProblem,
+        mesh: &Mesh,
+    ) -> Result<(), Failure> {
+        let vertices = grouped(mesh.points().len());
+        self.progress.stage(format!("assembling on {vertices} vertices"));
+        let d =
+            Discretization::new(problem, mesh).map_err(|error| Failure::Input(format!("{name}: {error}")))?;
+        let place = Place { problem: name, n, discretization: &d };
+        for index in 0..self.solvers.len() {
+            self.progress.stage(format!("{} on {vertices} vertices", self.solvers[index].as_str()));
+            let row = comparison.row(index, &place);
+            // A new measurement takes the place of an old one.
+            self.rows.retain(|old| !old.repeats(&row));
+            self.rows.insert(self.measured, row);
+            self.measured += 1;
+            write_rows(&self.folder, &self.rows)?;
+            self.progress.step();
+        }
+        Ok(())
+    }
+}

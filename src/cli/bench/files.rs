@@ -1,0 +1,87 @@
+//! The files of a comparison.
+
+use std::path::Path;
+
+use crate::cli::Failure;
+use crate::cli::setup::write_file;
+use crate::output::{Times, TimesPicture, render_times};
+use crate::study::comparison::{Curve, ORIGIN, Row, curves, markdown};
+
+pub(super) const ROWS: &str = "bench.csv";
+pub(super) const TABLE: &str = "bench.md";
+pub(super) const PICTURE: &str = "bench.png";
+
+/// The slopes to compare with: work in proportion to the vertices, and that of a sparse factorisation in the plane.
+const SLOPES: [f64; 2] = [1.0, 1.5];
+
+/// Rows of a file in the form of `bench.csv`.
+pub(super) fn read_rows(path: &Path) -> Result<Vec<Row>, Failure> {
+    let bad_input = |error: csv::Error| {
+        let error = error.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
+        let remedy = format!("give a CSV file with the columns of {ROWS}");
+        Failure::Input(format!("{}: {error}; {remedy}", path.display()))
+    };
+    let mut reader = csv::Reader::from_path(path).map_err(bad_input)?;
+    reader.deserialize().collect::<Result<_, _>>().map_err(bad_input)
+}
+
+/// The rows as they are.
+pub(super) fn write_rows(folder: &Path, rows: &[Row]) -> Result<(), Failure> {
+    write_file(&folder.join(ROWS), |out| {
+        let mut writer = csv::Writer::from_writer(out);
+        rows.iter().try_for_each(|row| writer.serialize(row))?;
+        writer.flush()
+    })
+}
+
+/// Table and picture.
+pub(super) fn write_results(folder: &Path, title: &str, rows: &[Row]) -> Result<(), Failure> {
+    write_file(&folder.join(TABLE), |out| out.write_all(markdown(rows).as_bytes()))?;
+    let curves = curves(rows);
+    let names = names(&curves);
+    let points: Vec<Vec<[f64; 2]>> = curves
+        .iter()
+        .map(|&curve| rows.iter().filter(|row| row.curve() == curve).filter_map(Row::point).collect())
+        .collect();
+    let drawn: Vec<Times> = names
+        .iter()
+        .zip(&points)
+        .filter(|(_, points)| !points.is_empty())
+        .map(|(name, points)| Times { name, points })
+        .collect();
+    let title = format!("{title}: time to a certified solution");
+    let png = render_times(&TimesPicture { title: &title, curves: &drawn, slopes: &SLOPES })
+        .map_err(|error| Failure::Input(format!("{PICTURE}: {error}")))?;
+    write_file(&folder.join(PICTURE), |out| out.write_all(&png))
+}
+
+/// Names that tell the curves apart: of the solver, of who ran it if that was not this program, of the problem if there
+/// are several.
+fn names(curves: &[Curve]) -> Vec<String> {
+    let several = curves.iter().any(|curve| curve.problem != curves[0].problem);
+    let name = |curve: &Curve| {
+        let problem = if several { format!(", {}", curve.problem) } else { String::new() };
+        format!("{}{problem}", solver_name(curve))
+    };
+    curves.iter().map(name).collect()
+}
+
+/// The solver, and who ran it if that was not this program.
+pub(super) fn solver_name(curve: &Curve) -> String {
+    let Curve { solver, origin, .. } = curve;
+    if *origin == ORIGIN || origin.is_empty() { (*solver).into() } else { format!("{solver} ({origin})") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_say_what_tells_curves_apart() {
+        let ours = Curve { problem: "square", solver: "clarabel", origin: ORIGIN };
+        let theirs = Curve { origin: "qpsolvers", ..ours };
+        assert_eq!(names(&[ours, theirs]), ["clarabel", "clarabel (qpsolvers)"]);
+        let other = Curve { problem: "plate", ..ours };
+        assert_eq!(names(&[ours, other]), ["clarabel, square", "clarabel, plate"]);
+    }
+}
