@@ -2,6 +2,7 @@
 //!
 //! Strings are parsed here and nowhere else. Exit codes: 0 certified; 1 ran, but not certified; 2 bad input or usage.
 
+mod answer;
 mod args;
 mod bench;
 mod case_file;

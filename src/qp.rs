@@ -9,6 +9,7 @@
 //!
 //! This is the convention everywhere: a [`QpBackend`] converts at its rim.
 
+mod answer;
 mod backend;
 mod clarabel;
 mod contact;
@@ -21,6 +22,7 @@ mod problem;
 pub use self::clarabel::Clarabel;
 #[cfg(feature = "osqp")]
 pub use self::osqp::Osqp;
+pub use answer::{Answer, AnswerError, Shape, read_answer};
 pub use backend::{BackendError, QpBackend, QpOptions, QpSolution, Status};
 pub use contact::contact_qp;
 pub use export::{QpPart, write_matrix_market, write_npz, write_qps};

@@ -18,7 +18,7 @@ pub use qp_solver::QpSolver;
 use thiserror::Error;
 
 use crate::discretization::Discretization;
-use crate::qp::{BackendError, Status};
+use crate::qp::{Answer, BackendError, Status};
 use cholesky::NotFactored;
 
 /// Anything that solves (3.4): a [`QpBackend`](crate::qp::QpBackend) by way of [`QpSolver`], or a method of its own.
@@ -75,6 +75,20 @@ pub struct Candidate {
     pub multiplier: Vec<f64>,
     /// How it was found.
     pub statistics: Statistics,
+}
+
+impl Candidate {
+    /// The candidate that an answer to [`contact_qp`](crate::qp::contact_qp) stands for: the displacements at the
+    /// unknowns get their boundary values, `g_h` and zero.
+    ///
+    /// # Panics
+    /// When `x` has not two entries for each unknown.
+    pub fn from_answer(d: &Discretization, Answer { x, y }: Answer, statistics: Statistics) -> Self {
+        assert_eq!(x.len(), 2 * d.interior().len(), "an answer has two displacements for each unknown");
+        let (x1, x2) = x.split_at(d.interior().len());
+        let displacement = [d.extend(x1, |a| d.height()[a]), d.extend(x2, |_| 0.0)];
+        Self { displacement, multiplier: y, statistics }
+    }
 }
 
 /// A guess of displacements and multipliers: of a nearby problem, or of a coarser mesh, prolonged.

@@ -35,7 +35,7 @@ pub(super) struct Arguments {
 pub(super) enum Command {
     /// Solve a case and write solution.vtu, summary.json, membranes.png
     Solve(SolveArguments),
-    /// Show every residual, from every backend, with and without polish
+    /// Show every residual, from every backend or of an answer
     Check(CheckArguments),
     /// Measure errors and rates on finer meshes, for a built-in case
     Converge(ConvergeArguments),
@@ -72,6 +72,15 @@ pub(super) struct SolveArguments {
 pub(super) struct CheckArguments {
     #[command(flatten)]
     pub(super) case: CaseArguments,
+    /// Judge this answer (x, y) to the exported QP instead
+    #[arg(long, value_name = "FILE")]
+    pub(super) answer: Option<PathBuf>,
+    /// Folder for the summary.json of the answer
+    #[arg(long, value_name = "DIR", requires = "answer")]
+    pub(super) out: Option<PathBuf>,
+    /// Largest relative residual, in place of the case file's
+    #[arg(long, value_name = "T", value_parser = tolerance, allow_negative_numbers = true)]
+    pub(super) tolerance: Option<f64>,
 }
 
 #[derive(Debug, Args)]

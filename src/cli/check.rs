@@ -1,17 +1,20 @@
-//! `membranes check`: every residual, all backends, side by side.
+//! `membranes check`: every residual, all backends, side by side, or of an answer from elsewhere.
 
 use super::args::CheckArguments;
 use super::case_file::BackendName;
 use super::progress::Progress;
 use super::setup::{Setup, options, solver};
 use super::terminal::{grouped, print};
-use super::{Failure, SolverSettings};
+use super::{Failure, SolverSettings, answer};
 use crate::action::{ContactSolution, Rejected, Residuals, certify};
 use crate::discretization::Discretization;
 use crate::fem::element_loads;
 use crate::flux::{FluxDefects, Reconstruction, Reconstructor};
 use crate::mesh::SubTriangulation;
 use crate::problem::ContactProblem;
+
+/// The second line above a result that nobody has polished.
+const AS_IT_IS: &str = "as it is";
 
 /// One backend's result.
 struct Column {
@@ -23,16 +26,20 @@ struct Column {
 
 pub(super) fn run(arguments: &CheckArguments) -> Result<(), Failure> {
     let progress = Progress::new(arguments.case.quiet);
-    let setup = Setup::new(&arguments.case, &progress)?;
-    let (d, _) = setup.discretize(&progress)?;
-    let mut columns = Vec::new();
-    for backend in BackendName::ALL.into_iter().filter(|backend| backend.is_built()) {
-        let ways = if backend.is_polished() { [true, false].as_slice() } else { &[true] };
-        for &polish in ways {
-            let settings = SolverSettings { backend, polish, ..setup.case.solver.clone() };
-            columns.push(column(&setup.name, &d, &settings, &progress)?);
-        }
+    let mut setup = Setup::new(&arguments.case, &progress)?;
+    if let Some(tolerance) = arguments.tolerance {
+        setup.case.solver.tolerance = tolerance;
     }
+    let (d, seconds) = setup.discretize(&progress)?;
+    let (columns, remedy) = match &arguments.answer {
+        None => (columns_of_backends(&setup, &d, &progress)?, ""),
+        Some(file) => {
+            progress.stage("judging the answer");
+            let result = answer::judge(&setup, &d, file, arguments.out.as_deref(), seconds)?;
+            let heading = [answer::NAME.into(), AS_IT_IS.into()];
+            (vec![Column { heading, must_certify: true, result }], answer::REMEDY)
+        }
+    };
     drop(progress);
     if !arguments.case.quiet {
         let unknowns = grouped(2 * d.interior().len());
@@ -50,8 +57,24 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<(), Failure> {
     match columns.iter().filter(|column| column.must_certify).find_map(|column| column.result.as_ref().err())
     {
         None => Ok(()),
-        Some(rejected) => Err(Failure::NotCertified(format!("{}: {rejected}", setup.name))),
+        Some(rejected) => Err(Failure::NotCertified(format!("{}: {rejected}{remedy}", setup.name))),
     }
+}
+
+fn columns_of_backends(
+    setup: &Setup,
+    d: &Discretization,
+    progress: &Progress,
+) -> Result<Vec<Column>, Failure> {
+    let mut columns = Vec::new();
+    for backend in BackendName::ALL.into_iter().filter(|backend| backend.is_built()) {
+        let ways = if backend.is_polished() { [true, false].as_slice() } else { &[true] };
+        for &polish in ways {
+            let settings = SolverSettings { backend, polish, ..setup.case.solver.clone() };
+            columns.push(column(&setup.name, d, &settings, progress)?);
+        }
+    }
+    Ok(columns)
 }
 
 fn column(
@@ -64,7 +87,7 @@ fn column(
     let way = match (backend.is_polished(), settings.polish) {
         (false, _) => "exact",
         (true, true) => "polished",
-        (true, false) => "as it is",
+        (true, false) => AS_IT_IS,
     };
     progress.stage(format!("{} ({way})", backend.as_str()));
     let candidate = solver(settings.backend)

@@ -74,6 +74,8 @@ pub enum Status {
     Unbounded,
     /// Its arithmetic broke down.
     NumericalError,
+    /// It came from elsewhere and has not said.
+    Unknown,
 }
 
 impl Status {
@@ -88,6 +90,7 @@ impl Status {
             Self::Infeasible => "infeasible",
             Self::Unbounded => "unbounded",
             Self::NumericalError => "numerical_error",
+            Self::Unknown => "unknown",
         }
     }
 }

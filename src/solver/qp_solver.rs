@@ -5,7 +5,7 @@ use std::time::Instant;
 use super::polish::polish;
 use super::{Candidate, ContactSolver, SolverError, SolverOptions, Statistics};
 use crate::discretization::Discretization;
-use crate::qp::{BackendError, QpBackend, QpOptions, QpProblem, QpSolution, Status, contact_qp};
+use crate::qp::{Answer, BackendError, QpBackend, QpOptions, QpProblem, QpSolution, Status, contact_qp};
 
 /// Poses (3.4) as a [`QpProblem`], has it solved by a backend, and polishes the answer.
 pub struct QpSolver {
@@ -30,17 +30,13 @@ impl ContactSolver for QpSolver {
         let qp = contact_qp(d);
         let posing = start.elapsed().as_secs_f64();
         let solution = solve_nondimensional(self.backend.as_mut(), &qp, &qp_options(d, options))?;
-        let (x1, x2) = solution.x.split_at(d.interior().len());
-        let mut candidate = Candidate {
-            displacement: [d.extend(x1, |a| d.height()[a]), d.extend(x2, |_| 0.0)],
-            multiplier: solution.y,
-            statistics: Statistics {
-                status: solution.status,
-                iterations: solution.iterations,
-                setup_seconds: posing + solution.setup_seconds,
-                ..Statistics::of(self.name())
-            },
+        let statistics = Statistics {
+            status: solution.status,
+            iterations: solution.iterations,
+            setup_seconds: posing + solution.setup_seconds,
+            ..Statistics::of(self.name())
         };
+        let mut candidate = Candidate::from_answer(d, Answer { x: solution.x, y: solution.y }, statistics);
         if options.polish {
             candidate.statistics.polish = polish(d, &qp, &mut candidate);
         }

@@ -2,6 +2,8 @@
 
 mod common;
 
+#[cfg(feature = "cli")]
+mod answer;
 mod backends;
 #[cfg(feature = "cli")]
 mod bad_input;
