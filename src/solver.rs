@@ -123,8 +123,11 @@ pub struct Statistics {
     pub status: Status,
     /// Iterations made: on the finest level, where there are several.
     pub iterations: usize,
-    /// Levels of the hierarchy that it has used, the finest included; 1 without one.
-    pub levels: usize,
+    /// Iterations on each level, from the coarsest to the finest; empty for a solver that knows no levels.
+    pub level_iterations: Vec<usize>,
+    /// The energies `1/2 w'K w - b'w` of the gap after each iteration on the finest level, for the method that lowers them in
+    /// every one; empty for others.
+    pub energies: Vec<f64>,
     /// Which solver was chosen and why, when that was left open.
     pub choice: Option<String>,
     /// Seconds spent before the first iteration.
@@ -142,7 +145,8 @@ impl Statistics {
             solver: solver.into(),
             status: Status::Solved,
             iterations: 0,
-            levels: 1,
+            level_iterations: Vec::new(),
+            energies: Vec::new(),
             choice: None,
             setup_seconds: 0.0,
             solve_seconds: 0.0,

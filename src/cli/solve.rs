@@ -158,8 +158,9 @@ fn table(summary: &Summary, polish: Option<PolishReport>, folder: &Path) -> Stri
                 summary.min_angle
             ),
         ),
-        ("solver", format!("{}: {} in {} iterations", summary.backend, summary.status, summary.iterations)),
-        ("polish", polish_line(polish)),
+        ("solver", solver_line(summary)),
+        ("chosen", summary.choice.clone().unwrap_or_default()),
+        ("polish", polish.map_or_else(String::new, polish_line)),
         ("certified", format!("largest residual {worst:.1e} (tolerance {:.0e})", summary.tolerance)),
         ("energy", number(summary.energy)),
         (
@@ -181,17 +182,20 @@ fn table(summary: &Summary, polish: Option<PolishReport>, folder: &Path) -> Stri
         ),
         ("files", format!("{}/{{{SOLUTION}, {SUMMARY}, {PICTURE}}}", folder.display())),
     ];
+    let rows: Vec<_> = rows.into_iter().filter(|(_, value)| !value.is_empty()).collect();
     format!("{}\n{}", summary.title, fields(&rows))
 }
 
-fn polish_line(polish: Option<PolishReport>) -> String {
-    match polish {
-        None => "none".into(),
-        Some(PolishReport { kept, repairs, residual_before, residual_after, .. }) => {
-            let verdict = if kept { "kept" } else { "not kept" };
-            let repairs =
-                if repairs == 1 { "1 contact repair".into() } else { format!("{repairs} contact repairs") };
-            format!("{verdict}, {repairs}, residual {residual_before:.1e} -> {residual_after:.1e}")
-        }
-    }
+fn solver_line(summary: &Summary) -> String {
+    let Summary { backend, status, iterations, level_iterations, .. } = summary;
+    let levels = level_iterations.len();
+    let on_levels = if levels > 1 { format!(" on the finest of {levels} levels") } else { String::new() };
+    format!("{backend}: {status} in {iterations} iterations{on_levels}")
+}
+
+fn polish_line(polish: PolishReport) -> String {
+    let PolishReport { kept, repairs, residual_before, residual_after, .. } = polish;
+    let verdict = if kept { "kept" } else { "not kept" };
+    let repairs = if repairs == 1 { "1 contact repair".into() } else { format!("{repairs} contact repairs") };
+    format!("{verdict}, {repairs}, residual {residual_before:.1e} -> {residual_after:.1e}")
 }

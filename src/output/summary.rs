@@ -35,8 +35,12 @@ pub struct Summary {
     pub min_angle: f64,
     /// The largest ratio of the longest edge of a triangle to the diameter of its inscribed circle.
     pub shape_regularity: f64,
-    /// Iterations of the solver.
+    /// Iterations of the solver, on the finest level of those that have several.
     pub iterations: usize,
+    /// Iterations on each level, from the coarsest to the finest; empty for a solver that knows no levels.
+    pub level_iterations: Vec<usize>,
+    /// Why it was chosen; absent when it was named.
+    pub choice: Option<String>,
     /// What the polish did; absent when it was not asked for or not possible.
     pub polish: Option<PolishSummary>,
     /// `J(u_h)`; absent when not certified.
@@ -124,6 +128,8 @@ impl Summary {
             min_angle: quality.min_angle,
             shape_regularity: quality.shape_regularity,
             iterations: statistics.iterations,
+            level_iterations: statistics.level_iterations.clone(),
+            choice: statistics.choice.clone(),
             polish: polish(statistics),
             energy: solution.map(ContactSolution::energy),
             contact_vertices: solution.map(|s| s.contact().iter().filter(|&&contact| contact).count()),

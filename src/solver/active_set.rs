@@ -40,19 +40,20 @@ impl ContactSolver for ActiveSet {
             steps: options.max_iterations.unwrap_or(MAX_STEPS),
             deadline: options.time_limit.map(|seconds| start + Duration::from_secs_f64(seconds)),
         };
-        let (active, levels) = match &options.warm_start {
-            Some(start) if start.fits(d) => (guess(d, &start.displacement, &start.multiplier), 1),
+        let (active, mut level_iterations) = match &options.warm_start {
+            Some(start) if start.fits(d) => (guess(d, &start.displacement, &start.multiplier), Vec::new()),
             _ => nested::guess_from_coarser_levels(d, &limits)?,
         };
         let setup_seconds = start.elapsed().as_secs_f64();
         let found = settle(d, active, &limits)?;
+        level_iterations.push(found.repairs + 1);
         Ok(Candidate {
             displacement: found.displacement,
             multiplier: found.multiplier,
             statistics: Statistics {
                 status: found.status,
                 iterations: found.repairs + 1,
-                levels,
+                level_iterations,
                 setup_seconds,
                 solve_seconds: start.elapsed().as_secs_f64() - setup_seconds,
                 ..Statistics::of(self.name())

@@ -23,15 +23,16 @@ impl ContactSolver for Auto {
         let unknowns = d.interior().len();
         let refinements = d.mesh().ancestry().len();
         let (small, hierarchy) = match refinements {
-            0 => (SMALL_WITHOUT_HIERARCHY, "no coarser mesh is known".to_string()),
-            _ => (SMALL, format!("the mesh has been refined {refinements} times")),
+            0 => (SMALL_WITHOUT_HIERARCHY, "no coarser mesh known".to_string()),
+            1 => (SMALL, "1 coarser mesh known".to_string()),
+            _ => (SMALL, format!("{refinements} coarser meshes known")),
         };
-        let size = format!("{unknowns} unknowns of each membrane");
-        let (mut candidate, reason) = if unknowns <= small {
-            (ActiveSet.solve(d, options)?, format!("{size} are few"))
+        let (mut candidate, size) = if unknowns <= small {
+            (ActiveSet.solve(d, options)?, "few")
         } else {
-            (Multigrid.solve(d, options)?, format!("{size} are many, {hierarchy}"))
+            (Multigrid.solve(d, options)?, "many")
         };
+        let reason = format!("by auto: {size} unknowns ({unknowns} a membrane), {hierarchy}");
         candidate.statistics.choice = Some(reason);
         Ok(candidate)
     }

@@ -38,8 +38,6 @@ pub(super) struct Hierarchy {
     levels: Vec<Level>,
     /// The vertex of the mesh to which each row of the finest level belongs.
     vertex: Vec<u32>,
-    /// How many levels come from the ancestry of the mesh.
-    geometric: usize,
 }
 
 /// One space. Rows belong to the vertices, in the numbering of the level; those of held vertices (on the boundary, or in no
@@ -73,7 +71,6 @@ impl Hierarchy {
             let Some(rows) = descend(&mut finest_first, transfer) else { break };
             order = composed(coarse_order.as_deref(), rows);
         }
-        let geometric = finest_first.len();
         while finest_first[finest_first.len() - 1].unknowns() > DIRECT {
             let coarsest = &finest_first[finest_first.len() - 1];
             let unknowns = coarsest.unknowns();
@@ -90,7 +87,7 @@ impl Hierarchy {
         let direct = Level { transfer: Transfer::default(), ..coarsest.clone() };
         finest_first.push(direct);
         finest_first.reverse();
-        Self { levels: finest_first, vertex, geometric }
+        Self { levels: finest_first, vertex }
     }
 
     pub(super) fn levels(&self) -> &[Level] {
@@ -100,11 +97,6 @@ impl Hierarchy {
     /// The number of the finest level.
     pub(super) fn finest(&self) -> usize {
         self.levels.len() - 1
-    }
-
-    /// How many levels come from the refinements that made the mesh.
-    pub(super) fn geometric(&self) -> usize {
-        self.geometric
     }
 
     /// The vertex of the mesh to which each row of the finest level belongs.
@@ -141,12 +133,6 @@ impl Hierarchy {
             level.lift(load, height);
         }
         (loads, heights)
-    }
-
-    /// The memory that it takes, bytes.
-    pub(super) fn bytes(&self) -> usize {
-        let level = |level: &Level| level.pattern.bytes() + level.values.bytes() + level.transfer.bytes();
-        self.levels.iter().map(level).sum::<usize>() + 4 * self.vertex.len()
     }
 }
 

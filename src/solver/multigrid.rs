@@ -15,7 +15,7 @@ use super::hierarchy::Hierarchy;
 use super::{Candidate, ContactSolver, SolverError, SolverOptions, StartingPoint, Statistics};
 use crate::discretization::Discretization;
 use crate::qp::Status;
-use half::{HalfProblem, HalfSolution, Limits, solve};
+use half::{HalfProblem, Limits, solve};
 
 /// The limit of cycles when none is given. Ten are enough on meshes of ordinary quality.
 const MAX_CYCLES: usize = 200;
@@ -50,15 +50,18 @@ impl ContactSolver for Multigrid {
         };
         let (gap, sum) = rayon::join(|| solve(&hierarchy, gap, &limits), || solve(&hierarchy, sum, &limits));
         let (gap, sum) = (gap?, sum?);
+        let level_iterations: Vec<usize> =
+            gap.cycles.iter().zip(&sum.cycles).map(|(a, b)| *a.max(b)).collect();
         let w = hierarchy.to_vertices(&gap.x);
         let y = hierarchy.to_vertices(&gap.y);
         Ok(Candidate {
             displacement: decoupled.recombine(&hierarchy.to_vertices(&sum.x), &w),
             multiplier: d.interior().iter().map(|&a| decoupled.gap_tension() * y[a]).collect(),
             statistics: Statistics {
-                status: worse(&gap, &sum),
-                iterations: gap.cycles.max(sum.cycles),
-                levels: hierarchy.finest(),
+                status: if gap.status == Status::Solved { sum.status } else { gap.status },
+                iterations: level_iterations.last().copied().unwrap_or(0),
+                level_iterations,
+                energies: gap.energies,
                 setup_seconds,
                 solve_seconds: start.elapsed().as_secs_f64() - setup_seconds,
                 ..Statistics::of(self.name())
@@ -95,9 +98,4 @@ fn halves(
         start: guess(&|start, a| mu1 * start.displacement[0][a] + mu2 * start.displacement[1][a]),
     };
     [gap, sum]
-}
-
-/// Why the half stopped that has not been solved.
-fn worse(gap: &HalfSolution, sum: &HalfSolution) -> Status {
-    if gap.status == Status::Solved { sum.status } else { gap.status }
 }

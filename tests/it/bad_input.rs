@@ -170,7 +170,7 @@ const BAD_SOLVER: &[Fault] = &[
     (
         "\"clarabel\"",
         "\"claarbel\"",
-        &["`solver.backend`", "`claarbel`", "one of clarabel, osqp, active-set"],
+        &["`solver.backend`", "`claarbel`", "one of auto, multigrid, active-set, clarabel, osqp"],
     ),
     ("\"clarabel\"", "3", &["`solver.backend` must be a text"]),
     #[cfg(not(feature = "osqp"))]
@@ -293,7 +293,7 @@ const BAD_ARGUMENTS: &[(&str, &[&str], &str)] = &[
     ("solve case.toml --tolerance nan", &["'nan'", "between 0 and 1"], "solve case.toml --tolerance 1e-6"),
     (
         "solve case.toml --backend calrabel",
-        &["one of clarabel, osqp, active-set"],
+        &["one of auto, multigrid, active-set, clarabel, osqp"],
         "solve case.toml --backend clarabel",
     ),
     #[cfg(not(feature = "osqp"))]

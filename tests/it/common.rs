@@ -7,18 +7,22 @@ use membrane_contact::problem::{Case, ExactSolution};
 use membrane_contact::qp::Clarabel;
 #[cfg(feature = "osqp")]
 use membrane_contact::qp::Osqp;
-use membrane_contact::solver::{ActiveSet, Candidate, ContactSolver, QpSolver, SolverOptions};
+use membrane_contact::solver::{
+    ActiveSet, Auto, Candidate, ContactSolver, Multigrid, QpSolver, SolverOptions,
+};
 
 /// What is asked of backends and of the certificate: the program's default.
 pub const TOLERANCE: f64 = 1e-8;
 
-/// Every solver of this build; the first is the default.
+/// Every solver of this build.
 pub fn solvers() -> Vec<Box<dyn ContactSolver>> {
     vec![
         Box::new(QpSolver::new(Clarabel)),
         #[cfg(feature = "osqp")]
         Box::new(QpSolver::new(Osqp)),
         Box::new(ActiveSet),
+        Box::new(Multigrid),
+        Box::new(Auto),
     ]
 }
 

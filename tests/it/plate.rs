@@ -18,6 +18,9 @@ const UNPOLISHED: f64 = 1e-4;
 /// A polished result is right to rounding, amplified by the square of the mesh size (here 1e3).
 const POLISHED: f64 = 1e-10;
 
+/// Multigrid knows the contact set, but solves to its tolerance only.
+const ITERATED: f64 = 1e-7;
+
 fn plate() -> (CaseFile, Mesh) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/plate.toml");
     let case = CaseFile::read(&path).expect("the example is valid");
@@ -47,7 +50,8 @@ fn backends_agree_on_displacements_action_and_contact() {
             (0..mesh.points().len()).filter(|&a| reference.contact()[a] != solution.contact()[a]).collect();
         if *polish {
             assert!(differing.is_empty(), "polished, the contact sets are the same");
-            assert!(distance(reference.lambda(), solution.lambda()) < POLISHED * d.scales().force_density);
+            let agreement = if solution.statistics().solver == "multigrid" { ITERATED } else { POLISHED };
+            assert!(distance(reference.lambda(), solution.lambda()) < agreement * d.scales().force_density);
         }
         for a in differing {
             assert!(

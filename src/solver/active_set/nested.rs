@@ -8,17 +8,18 @@ use crate::solver::cholesky::NotFactored;
 use crate::solver::decoupled::Decoupled;
 use crate::solver::hierarchy::{Hierarchy, Level};
 
-/// A guess of the contact set over the unknowns, and the number of levels with that of `d`.
+/// A guess of the contact set over the unknowns, and the factorisations on each of the coarser levels.
 ///
 /// A vertex is guessed to touch when all of its parents do: a guess that is rather too small is repaired in fewer steps.
 pub(super) fn guess_from_coarser_levels(
     d: &Discretization,
     limits: &Limits,
-) -> Result<(Vec<bool>, usize), NotFactored> {
+) -> Result<(Vec<bool>, Vec<usize>), NotFactored> {
     let hierarchy = Hierarchy::new(d);
     let decoupled = Decoupled::new(d);
     let load = hierarchy.to_rows(|a| decoupled.gap_load(a));
     let (loads, _) = hierarchy.lifted(load, hierarchy.to_rows(|a| d.height()[a]));
+    let mut factorizations = Vec::new();
     let mut touches = vec![false; hierarchy.levels()[1].pattern.rows()];
     for (l, load) in loads.iter().enumerate().take(hierarchy.finest()).skip(1) {
         let level = &hierarchy.levels()[l];
@@ -26,7 +27,8 @@ pub(super) fn guess_from_coarser_levels(
         let b: Vec<f64> = rows.iter().map(|&i| load[i]).collect();
         let active = rows.iter().map(|&i| touches[i]).collect();
         let mut half = Obstacle::new(&k, b.clone(), b, d.scales().displacement)?;
-        let (gap, ..) = half.settle(active, limits)?;
+        let (gap, _, repairs) = half.settle(active, limits)?;
+        factorizations.push(repairs + 1);
         let mut on_level = vec![false; touches.len()];
         for (&i, y) in rows.iter().zip(&gap.y) {
             on_level[i] = *y > 0.0;
@@ -39,7 +41,7 @@ pub(super) fn guess_from_coarser_levels(
     for (&a, &touches) in hierarchy.vertex().iter().zip(&touches) {
         over_vertices[a as usize] = touches;
     }
-    Ok((d.interior().iter().map(|&a| over_vertices[a]).collect(), hierarchy.finest()))
+    Ok((d.interior().iter().map(|&a| over_vertices[a]).collect(), factorizations))
 }
 
 /// The matrix of a level at the vertices that are not held, and their rows.

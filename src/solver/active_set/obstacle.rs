@@ -99,7 +99,7 @@ impl<'k> Obstacle<'k> {
 
     /// `w = 0` where `active`, `y = 0` elsewhere. Rows and columns of active vertices are those of the identity, so that the
     /// pattern stays.
-    fn solve(&mut self, active: &[bool]) -> Result<Gap, NotFactored> {
+    pub(super) fn solve(&mut self, active: &[bool]) -> Result<Gap, NotFactored> {
         let entries = self.k.iter().map(|(&value, (i, j))| match (active[i] || active[j], i == j) {
             (false, _) => value,
             (true, on_diagonal) => f64::from(on_diagonal),
@@ -114,7 +114,7 @@ impl<'k> Obstacle<'k> {
     }
 
     /// The vertices whose sign is wrong beyond rounding.
-    fn wrong(&self, active: &[bool], gap: &Gap) -> Vec<usize> {
+    pub(super) fn wrong(&self, active: &[bool], gap: &Gap) -> Vec<usize> {
         let terms =
             |i: usize| self.row(i, |k, j| (k * gap.w[j]).abs()) + self.b_terms[i].max(self.b[i].abs());
         let is_wrong = |&i: &usize| {

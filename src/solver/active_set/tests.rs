@@ -1,1 +1,104 @@
+use sprs::{CsMat, TriMat};
 
+use super::*;
+use crate::action::certify;
+use crate::mesh::samples::irregular;
+use crate::mesh::{Pattern, rectangle};
+use crate::problem::{Case, ContactProblem, Function};
+
+/// Factorisations on a level that nested iteration needs at most.
+const FACTORIZATIONS: usize = 4;
+
+const TOLERANCE: f64 = 1e-8;
+
+/// Rounding of solutions of size one.
+const ROUNDING: f64 = 1e-12;
+
+fn dense(entries: &[[f64; 3]; 3]) -> CsMat<f64> {
+    let mut triplets = TriMat::new((3, 3));
+    for (i, row) in entries.iter().enumerate() {
+        row.iter().enumerate().for_each(|(j, &value)| triplets.add_triplet(i, j, value));
+    }
+    triplets.to_csr()
+}
+
+fn obstacle<'k>(k: &'k CsMat<f64>, b: &[f64]) -> Obstacle<'k> {
+    Obstacle::new(k, b.to_vec(), b.to_vec(), 1.0).unwrap()
+}
+
+/// Whether all repairs at once come back to a contact set.
+fn cycles(k: &CsMat<f64>, b: &[f64], start: &[bool]) -> bool {
+    let mut half = obstacle(k, b);
+    let mut active = start.to_vec();
+    let mut seen = Vec::new();
+    while !seen.contains(&active) {
+        seen.push(active.clone());
+        let gap = half.solve(&active).unwrap();
+        let wrong = half.wrong(&active, &gap);
+        if wrong.is_empty() {
+            return false;
+        }
+        wrong.iter().for_each(|&i| active[i] = !active[i]);
+    }
+    true
+}
+
+#[test]
+fn contact_sets_that_would_come_back_are_left_by_single_repairs() {
+    // Curtis, Han, Robinson, Comput. Optim. Appl. 60 (2015) 311, example 2.1.
+    let k = dense(&[[4.0, 5.0, -5.0], [5.0, 9.0, -5.0], [-5.0, -5.0, 7.0]]);
+    let b = [2.0, 1.0, -3.0];
+    let starts = (0..8).map(|bits| [0, 1, 2].map(|i| bits >> i & 1 == 1).to_vec());
+    let mut found = 0;
+    for start in starts {
+        found += usize::from(cycles(&k, &b, &start));
+        let limits = Limits { steps: 60, deadline: None };
+        let (gap, status, _) = obstacle(&k, &b).settle(start, &limits).unwrap();
+        assert_eq!(status, Status::Solved);
+        for i in 0..3 {
+            assert!(gap.w[i] >= -ROUNDING && gap.y[i] >= -ROUNDING && gap.w[i] * gap.y[i] == 0.0);
+        }
+    }
+    assert!(found > 0, "there were cycles to be left");
+}
+
+#[test]
+fn few_factorisations_are_needed_on_each_level() {
+    let load = Function::from_fn(|x: f64, y: f64| 30.0 * (12.566 * x).sin() * (9.425 * y).sin());
+    let problem = ContactProblem::builder().tension(1.0, 1.0).load(-10.0, load).height(0.05).build().unwrap();
+    let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [128; 2], Pattern::Right).unwrap();
+    let d = Discretization::new(&problem, &mesh).unwrap();
+    let found = ActiveSet.solve(&d, &SolverOptions::default()).unwrap();
+    let steps = &found.statistics.level_iterations;
+    assert_eq!(steps.len(), 7);
+    assert!(steps.iter().all(|&steps| steps <= FACTORIZATIONS), "{steps:?}");
+    // A guess of no contact needs more.
+    let nothing = vec![false; d.interior().len()];
+    let cold = settle(&d, nothing, &Limits { steps: MAX_STEPS, deadline: None }).unwrap();
+    assert!(cold.repairs + 1 > FACTORIZATIONS);
+}
+
+#[test]
+fn biactive_data_and_obtuse_triangles_are_solved() {
+    // Everywhere in contact without pushing: any contact set is right.
+    for q in [0.0, 1e-12, 1e-8] {
+        let parameters = [("q".to_string(), q)].into_iter().collect();
+        let problem = Case::FullContact.solution(&parameters).unwrap().problem().unwrap();
+        for mesh in [rectangle([0.0, 0.0], [1.0, 1.0], [24; 2], Pattern::Right).unwrap(), irregular(16)] {
+            let d = Discretization::new(&problem, &mesh).unwrap();
+            let found = ActiveSet.solve(&d, &SolverOptions::default()).unwrap();
+            assert_eq!(found.statistics.status, Status::Solved);
+            assert!(certify(&d, found, TOLERANCE).is_ok());
+        }
+    }
+    // A long thin rectangle in square cells' place: obtuse once it is sheared.
+    let flat = rectangle([0.0, 0.0], [1.0, 1.0], [20; 2], Pattern::Right).unwrap();
+    let sheared = flat.points().iter().map(|&[x, y]| [x + 3.0 * y, y]).collect();
+    let mesh = crate::mesh::Mesh::new(sheared, flat.triangles().to_vec()).unwrap();
+    let problem = ContactProblem::builder().tension(1.0, 2.0).load(-30.0, 10.0).height(0.1).build().unwrap();
+    let d = Discretization::new(&problem, &mesh).unwrap();
+    let positive = d.stiffness().iter().filter(|&(&k, (i, j))| i != j && k > 0.1).count();
+    assert!(positive > 100, "K is no M-matrix");
+    let found = ActiveSet.solve(&d, &SolverOptions::default()).unwrap();
+    assert!(certify(&d, found, TOLERANCE).is_ok());
+}

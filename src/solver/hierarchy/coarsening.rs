@@ -10,6 +10,9 @@ use super::transfer::Transfer;
 /// A coupling is strong when it has at least this fraction of the strongest one of its row.
 const STRONG: f64 = 0.25;
 
+/// What weak couplings leave of a diagonal entry at least, as a fraction.
+const LEAST_DIAGONAL: f64 = 0.1;
+
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Kind {
     Undecided,
@@ -29,12 +32,13 @@ pub(super) fn coarsened(pattern: &Pattern, values: &Values) -> Transfer {
         same_vertex.push(i as u32);
     }
     let (mut start, mut index, mut weight) = (vec![0], Vec::new(), Vec::new());
+    let mut interpolation = Interpolation::new(pattern, values, &kind);
     for i in 0..rows {
         if kind[i] == Kind::Coarse {
             index.push(number[i]);
             weight.push(1.0);
         } else {
-            for (j, share) in interpolation(pattern, values, &kind, i) {
+            for &(j, share) in interpolation.row(i) {
                 index.push(number[j]);
                 weight.push(share);
             }
@@ -85,21 +89,83 @@ fn split(pattern: &Pattern, values: &Values) -> Vec<Kind> {
             kind[i] = Kind::Coarse;
         }
     }
+    second_pass(pattern, values, &mut kind);
     kind
 }
 
-/// What a fine vertex takes from its strong coarse neighbours: their couplings, raised so that all of them are there. The
-/// weights of a row without positive couplings add up to what the row adds up to: one, away from vertices that pull.
-fn interpolation<'a>(
+/// Fine vertices that depend on each other need a coarse one on which both depend: where there is none, one of the two
+/// becomes coarse.
+fn second_pass(pattern: &Pattern, values: &Values, kind: &mut [Kind]) {
+    let mut depends_on = vec![u32::MAX; kind.len()];
+    for i in 0..kind.len() {
+        if kind[i] != Kind::Fine {
+            continue;
+        }
+        for (k, _) in strong(pattern, values, i) {
+            depends_on[k] = i as u32;
+        }
+        let shares = |kind: &[Kind], j: usize| {
+            strong(pattern, values, j).any(|(k, _)| kind[k] == Kind::Coarse && depends_on[k] == i as u32)
+        };
+        let alone: Vec<usize> = strong(pattern, values, i)
+            .map(|(j, _)| j)
+            .filter(|&j| kind[j] == Kind::Fine && !shares(kind, j))
+            .collect();
+        match alone[..] {
+            [] => {}
+            [j] => kind[j] = Kind::Coarse,
+            _ => kind[i] = Kind::Coarse,
+        }
+    }
+}
+
+/// Classical interpolation: what a fine vertex depends on is coarse, or a fine vertex whose own dependence on the coarse
+/// ones takes its place; what is weak goes to the diagonal.
+struct Interpolation<'a> {
     pattern: &'a Pattern,
     values: &'a Values,
     kind: &'a [Kind],
-    i: usize,
-) -> impl Iterator<Item = (usize, f64)> + 'a {
-    let off = &values.off_diagonal[pattern.range(i)];
-    let [negative, positive] =
-        off.iter().fold([0.0, 0.0], |[n, p], &a| if a < 0.0 { [n - a, p] } else { [n, p + a] });
-    let coarse = move || strong(pattern, values, i).filter(|&(j, _)| kind[j] == Kind::Coarse);
-    let raise = negative / coarse().map(|(_, a)| a).sum::<f64>() / (values.diagonal[i] + positive);
-    coarse().map(move |(j, a)| (j, a * raise))
+    /// Where a coarse vertex stands among the parents of the current row, plus one.
+    place: Vec<u32>,
+    parents: Vec<(usize, f64)>,
+}
+
+impl<'a> Interpolation<'a> {
+    fn new(pattern: &'a Pattern, values: &'a Values, kind: &'a [Kind]) -> Self {
+        Self { pattern, values, kind, place: vec![0; kind.len()], parents: Vec::new() }
+    }
+
+    /// The coarse vertices from which the fine vertex `i` takes its value, and their weights.
+    fn row(&mut self, i: usize) -> &[(usize, f64)] {
+        let Self { pattern, values, kind, place, parents } = self;
+        for &(k, _) in parents.iter() {
+            place[k] = 0;
+        }
+        parents.clear();
+        for (k, a) in strong(pattern, values, i).filter(|&(k, _)| kind[k] == Kind::Coarse) {
+            parents.push((k, a));
+            place[k] = parents.len() as u32;
+        }
+        let mut diagonal = values.diagonal[i];
+        for (&j, &a) in pattern.row(i).iter().zip(&values.off_diagonal[pattern.range(i)]) {
+            let j = j as usize;
+            if place[j] != 0 {
+                continue;
+            }
+            let couplings = pattern.row(j).iter().zip(&values.off_diagonal[pattern.range(j)]);
+            let shared = couplings.filter(|&(&k, &b)| place[k as usize] != 0 && b < 0.0);
+            let total: f64 = shared.clone().map(|(_, b)| b).sum();
+            if a < 0.0 && total < 0.0 {
+                for (&k, b) in shared {
+                    parents[place[k as usize] as usize - 1].1 -= a * b / total;
+                }
+            } else {
+                diagonal += a;
+            }
+        }
+        // Weak couplings could use up the diagonal.
+        let diagonal = diagonal.max(LEAST_DIAGONAL * values.diagonal[i]);
+        parents.iter_mut().for_each(|(_, weight)| *weight /= diagonal);
+        parents
+    }
 }

@@ -53,10 +53,6 @@ impl Pattern {
         self.start.len() - 1
     }
 
-    pub(super) fn bytes(&self) -> usize {
-        size_of_val(&self.start[..]) + size_of_val(&self.column[..])
-    }
-
     /// The largest distance of a row and a column.
     pub(super) fn bandwidth(&self) -> usize {
         let reach = |i: usize| self.row(i).iter().map(|&j| i.abs_diff(j as usize)).max().unwrap_or(0);
@@ -74,13 +70,6 @@ impl Values {
             sum += a * x[j as usize];
         }
         sum
-    }
-
-    pub(in crate::solver) fn bytes(&self) -> usize {
-        [&self.off_diagonal, &self.diagonal, &self.inverse]
-            .map(|values| size_of_val(&values[..]))
-            .iter()
-            .sum()
     }
 
     /// Replaces the row `i` by a sum whose columns are in the pattern.

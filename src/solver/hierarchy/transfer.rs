@@ -128,15 +128,6 @@ impl Transfer {
         self.same_vertex.iter().map(|&i| fine[i as usize]).collect()
     }
 
-    pub(super) fn bytes(&self) -> usize {
-        let weights = |weights: &Weights| {
-            size_of_val(&weights.start[..])
-                + size_of_val(&weights.index[..])
-                + size_of_val(&weights.weight[..])
-        };
-        weights(&self.parents) + weights(&self.children) + size_of_val(&self.same_vertex[..])
-    }
-
     /// `P' f`.
     pub(in crate::solver) fn restrict(&self, fine: &[f64]) -> Vec<f64> {
         let at = |a: usize| self.children(a).map(|(i, weight)| weight * fine[i]).sum();

@@ -5,6 +5,10 @@ use sprs::CsMat;
 use crate::solver::cholesky::{Cholesky, NotFactored};
 use crate::solver::hierarchy::{Level, Values};
 
+/// Truncated hat functions can depend on each other, and the matrix is singular then. With its diagonal raised by this
+/// fraction it has a factor; the correction still lowers the energy, and is the same but for this fraction.
+const SHIFT: f64 = 1e-10;
+
 /// A Cholesky factor that follows the truncated matrix of a level.
 pub(super) struct Direct {
     cholesky: Cholesky,
@@ -41,7 +45,7 @@ impl Direct {
         let value = |&at: &usize| match at.checked_sub(entries) {
             None => values.off_diagonal[at],
             Some(row) if values.diagonal[row] == 0.0 => 1.0,
-            Some(row) => values.diagonal[row],
+            Some(row) => (1.0 + SHIFT) * values.diagonal[row],
         };
         self.cholesky.refactor(self.source.iter().map(value))
     }

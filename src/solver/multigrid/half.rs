@@ -48,9 +48,9 @@ pub(super) struct HalfSolution {
     pub(super) x: Vec<f64>,
     /// `K x - b` where `x` is at its bound, zero elsewhere.
     pub(super) y: Vec<f64>,
-    /// Cycles on the finest level.
-    pub(super) cycles: usize,
     pub(super) status: Status,
+    /// Cycles on each level, from the coarsest.
+    pub(super) cycles: Vec<usize>,
     /// The energies of the iterates on the finest level.
     pub(super) energies: Vec<f64>,
 }
@@ -69,19 +69,24 @@ pub(super) fn solve(
         let weight = if l == hierarchy.finest() { &weight } else { &unweighted };
         Bounded { level: &hierarchy.levels()[l], b: &loads[l], lower, weight }
     };
+    let mut cycles = Vec::new();
     let x = match start {
         Some(start) => on_level(hierarchy.finest()).feasible(start),
         None => {
             let mut x = vec![0.0; hierarchy.levels()[1].pattern.rows()];
             for l in 1..hierarchy.finest() {
                 let limits = Limits { cycles: COARSE_CYCLES, ..*limits };
-                x = Cycles::new(l, on_level(l), x, &mut coarse)?.run(&limits, 0.0)?.x;
-                x = prolonged(hierarchy, l, x, &heights[l], lower);
+                let found = Cycles::new(l, on_level(l), x, &mut coarse)?.run(&limits, 0.0)?;
+                cycles.extend(found.cycles);
+                x = prolonged(hierarchy, l, found.x, &heights[l], lower);
             }
             x
         }
     };
-    Cycles::new(hierarchy.finest(), on_level(hierarchy.finest()), x, &mut coarse)?.run(limits, 1.0)
+    let finest = hierarchy.finest();
+    let mut found = Cycles::new(finest, on_level(finest), x, &mut coarse)?.run(limits, 1.0)?;
+    cycles.append(&mut found.cycles);
+    Ok(HalfSolution { cycles, ..found })
 }
 
 /// A function on level `l` with its boundary values, on the level above with zero ones.
@@ -150,7 +155,7 @@ impl<'c, 'h> Cycles<'c, 'h> {
         };
         let y = self.bounded.multiplier(&self.x);
         let energies = history.iter().map(|found| found.energy).collect();
-        Ok(HalfSolution { x: self.x, y, cycles: history.len() - 1, status, energies })
+        Ok(HalfSolution { x: self.x, y, cycles: vec![history.len() - 1], status, energies })
     }
 
     /// Adds the correction and relaxes; damps it where that has not lowered the energy.

@@ -1,1 +1,221 @@
+use proptest::prelude::*;
 
+use super::*;
+use crate::action::certify;
+use crate::mesh::samples::{Random, irregular};
+use crate::mesh::{Mesh, MeshSize, Pattern, disk, generate, l_shape, rectangle};
+use crate::problem::{ContactProblem, Domain, Function};
+use crate::solver::ActiveSet;
+use crate::solver::hierarchy::Hierarchy;
+use truncation::Truncation;
+
+const TOLERANCE: f64 = 1e-9;
+
+/// Cycles on structured meshes at [`TOLERANCE`], whatever their size.
+const CYCLES: usize = 10;
+
+/// Two energies of size one that differ by less are the same.
+const ENERGY_ROUNDING: f64 = 1e-13;
+
+fn problem(tension: [f64; 2], height: f64) -> ContactProblem {
+    let load = Function::from_fn(|x: f64, y: f64| 30.0 * (12.566 * x).sin() * (9.425 * y).sin());
+    ContactProblem::builder()
+        .tension(tension[0], tension[1])
+        .load(-10.0, load)
+        .height(height)
+        .build()
+        .unwrap()
+}
+
+/// Right-angled, crossed, round, with a corner, graded, unstructured, without ancestry, refined.
+fn meshes() -> Vec<Mesh> {
+    let square = |cells| rectangle([0.0, 0.0], [1.0, 1.0], cells, Pattern::Right).unwrap();
+    let unit = Domain::Rectangle { lower: [0.0, 0.0], upper: [1.0, 1.0] };
+    vec![
+        square([32, 32]),
+        square([24, 40]),
+        square([31, 17]),
+        rectangle([0.0, 0.0], [1.0, 1.0], [16, 16], Pattern::Crossed).unwrap(),
+        disk([0.5, 0.5], 0.5, 16).unwrap(),
+        l_shape(1.0, 16, Pattern::Right).unwrap(),
+        l_shape(1.0, 16, Pattern::Right).unwrap().graded([0.0, 0.0], 2.0).unwrap(),
+        generate(&unit, MeshSize::EdgeLength { size: 0.04, min_angle: 25.0 }).unwrap(),
+        irregular(6).refine().mesh.refine().mesh,
+    ]
+}
+
+fn solve_by(solver: &mut dyn ContactSolver, d: &Discretization, options: &SolverOptions) -> Candidate {
+    solver.solve(d, options).expect("it runs")
+}
+
+fn options() -> SolverOptions {
+    SolverOptions { tolerance: TOLERANCE, ..SolverOptions::default() }
+}
+
+/// Whether every energy is below the one before, but for rounding.
+fn falls(energies: &[f64]) -> bool {
+    energies.windows(2).all(|pair| pair[1] <= pair[0] + ENERGY_ROUNDING * pair[0].abs())
+}
+
+#[test]
+fn it_finds_what_the_active_set_method_finds() {
+    for mesh in meshes() {
+        for (tension, height) in [([1.0, 1.0], 0.05), ([1.0, 300.0], 0.0), ([7.0, 0.2], 0.3)] {
+            let problem = problem(tension, height);
+            let d = Discretization::new(&problem, &mesh).unwrap();
+            let found = solve_by(&mut Multigrid, &d, &options());
+            assert!(falls(&found.statistics.energies), "{:?}", found.statistics.energies);
+            let found = certify(&d, found, TOLERANCE).unwrap();
+            let exact = certify(&d, solve_by(&mut ActiveSet, &d, &options()), TOLERANCE).unwrap();
+            assert_eq!(found.contact(), exact.contact());
+            let scale = d.scales().force_density;
+            let pairs = found.lambda().iter().zip(exact.lambda());
+            assert!(pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) < 10.0 * TOLERANCE * scale);
+        }
+    }
+}
+
+#[test]
+fn cycles_do_not_depend_on_the_size_of_the_mesh() {
+    let problem = problem([1.0, 1.0], 0.05);
+    for cells in [16, 32, 64, 128] {
+        for pattern in [Pattern::Right, Pattern::Crossed] {
+            let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [cells; 2], pattern).unwrap();
+            let d = Discretization::new(&problem, &mesh).unwrap();
+            let statistics = solve_by(&mut Multigrid, &d, &options()).statistics;
+            assert_eq!(statistics.status, Status::Solved);
+            assert!(statistics.iterations <= CYCLES, "{cells} cells: {}", statistics.iterations);
+        }
+    }
+    // Stopped early, it says so and is not certified.
+    let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [32; 2], Pattern::Right).unwrap();
+    let d = Discretization::new(&problem, &mesh).unwrap();
+    let stopped = solve_by(&mut Multigrid, &d, &SolverOptions { max_iterations: Some(2), ..options() });
+    assert_eq!((stopped.statistics.status, stopped.statistics.iterations), (Status::IterationLimit, 2));
+    assert!(certify(&d, stopped, TOLERANCE).is_err());
+}
+
+#[test]
+fn an_energy_that_rises_is_seen() {
+    assert!(falls(&[1.0, 0.5, 0.5, -1.0]));
+    assert!(!falls(&[1.0, 0.5, 0.6, -1.0]));
+}
+
+#[test]
+fn a_warm_start_needs_no_cycles_from_its_own_answer() {
+    let problem = problem([1.0, 2.0], 0.05);
+    let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [32; 2], Pattern::Right).unwrap();
+    let d = Discretization::new(&problem, &mesh).unwrap();
+    let cold = solve_by(&mut Multigrid, &d, &options());
+    let again = SolverOptions { warm_start: Some(cold.clone().into()), ..options() };
+    assert!(cold.statistics.iterations > 3);
+    assert!(solve_by(&mut Multigrid, &d, &again).statistics.iterations <= 1);
+}
+
+#[test]
+fn results_do_not_depend_on_the_number_of_threads() {
+    let problem = problem([1.0, 2.0], 0.05);
+    let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [200, 120], Pattern::Right).unwrap();
+    let d = Discretization::new(&problem, &mesh).unwrap();
+    let [one, four] = [1, 4].map(|threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| solve_by(&mut Multigrid, &d, &options()))
+    });
+    assert_eq!(one.displacement, four.displacement);
+    assert_eq!(one.multiplier, four.multiplier);
+}
+
+/// `P' T A T P` of a level with all its rows by brute force, where `fine` is dense and truncated.
+fn product(fine: &[Vec<f64>], hierarchy: &Hierarchy, l: usize) -> Vec<Vec<f64>> {
+    let levels = hierarchy.levels();
+    let rows = levels[l].pattern.rows();
+    let mut coarse = vec![vec![0.0; rows]; rows];
+    for (i, row) in fine.iter().enumerate() {
+        for (j, value) in row.iter().enumerate().filter(|(_, value)| **value != 0.0) {
+            for (a, p) in levels[l + 1].transfer.parents(i) {
+                for (b, q) in levels[l + 1].transfer.parents(j) {
+                    coarse[a][b] += p * value * q;
+                }
+            }
+        }
+    }
+    coarse
+}
+
+/// The largest difference of a truncated matrix from one by brute force, at vertices that are not held.
+fn truncation_defect(hierarchy: &Hierarchy, truncation: &Truncation, frozen: &[bool]) -> f64 {
+    let levels = hierarchy.levels();
+    let finest = hierarchy.finest();
+    let top = &levels[finest];
+    let rows = top.pattern.rows();
+    let free = |i: usize| !frozen[i] && !top.is_held(i);
+    let mut dense = vec![vec![0.0; rows]; rows];
+    for i in (0..rows).filter(|&i| free(i)) {
+        dense[i][i] = top.values.diagonal[i];
+        for (&j, &a) in top.pattern.row(i).iter().zip(&top.values.off_diagonal[top.pattern.range(i)]) {
+            dense[i][j as usize] = if free(j as usize) { a } else { 0.0 };
+        }
+    }
+    let mut defect: f64 = 0.0;
+    for l in (0..finest).rev() {
+        dense = product(&dense, hierarchy, l);
+        let values = truncation.values(l);
+        let level = &levels[l];
+        for i in (0..dense.len()).filter(|&i| !level.is_held(i)) {
+            defect = defect.max((dense[i][i] - values.diagonal[i]).abs());
+            for (&j, &a) in level.pattern.row(i).iter().zip(&values.off_diagonal[level.pattern.range(i)]) {
+                if !level.is_held(j as usize) {
+                    defect = defect.max((dense[i][j as usize] - a).abs());
+                }
+            }
+        }
+    }
+    defect
+}
+
+#[test]
+fn truncated_matrices_follow_every_change_of_the_contact_set() {
+    /// Rounding of matrix entries of size ten.
+    const ROUNDING: f64 = 1e-12;
+    let problem = problem([1.0, 1.0], 0.05);
+    let square = rectangle([0.0, 0.0], [1.0, 1.0], [16; 2], Pattern::Right).unwrap();
+    for mesh in [square, irregular(4).refine().mesh, irregular(13)] {
+        let d = Discretization::new(&problem, &mesh).unwrap();
+        let hierarchy = Hierarchy::new(&d);
+        let mut truncation = Truncation::new(&hierarchy);
+        let rows = hierarchy.vertex().len();
+        let mut frozen = vec![false; rows];
+        let mut random = Random::new(7);
+        for _ in 0..4 {
+            let changed: Vec<u32> = (0..rows as u32).filter(|_| random.below(5) == 0).collect();
+            changed.iter().for_each(|&i| frozen[i as usize] = !frozen[i as usize]);
+            assert!(truncation_defect(&hierarchy, &truncation, &frozen) > ROUNDING, "without the update");
+            truncation.update(hierarchy.finest(), &frozen, &changed);
+            assert!(truncation_defect(&hierarchy, &truncation, &frozen) < ROUNDING);
+        }
+        truncation.reset(hierarchy.finest());
+        assert!(truncation_defect(&hierarchy, &truncation, &vec![false; rows]) < ROUNDING);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn random_data_are_solved_and_the_energy_falls(
+        cells in 3..14usize,
+        refinements in 0..3usize,
+        loads in prop::array::uniform4(-30.0..30.0f64),
+        height in 0.0..0.5f64,
+        stiff in 0.01..100.0f64,
+    ) {
+        let mesh = (0..refinements).fold(irregular(cells), |mesh, _| mesh.refine().mesh);
+        let f1 = Function::from_fn(move |x: f64, y: f64| loads[0] + loads[1] * (7.0 * x * y).sin());
+        let f2 = Function::from_fn(move |x: f64, y: f64| loads[2] + loads[3] * (5.0 * x - 3.0 * y).cos());
+        let problem = ContactProblem::builder().tension(1.0, stiff).load(f1, f2).height(height).build().unwrap();
+        let d = Discretization::new(&problem, &mesh).unwrap();
+        let found = solve_by(&mut Multigrid, &d, &options());
+        prop_assert!(falls(&found.statistics.energies), "{:?}", found.statistics.energies);
+        prop_assert!(certify(&d, found, TOLERANCE).is_ok());
+    }
+}
