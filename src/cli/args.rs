@@ -51,7 +51,7 @@ pub(super) enum Command {
 pub(super) struct SolveArguments {
     #[command(flatten)]
     pub(super) case: CaseArguments,
-    /// Solver, not the case file's: auto, multigrid, active-set, clarabel, osqp
+    /// Solver: auto, multigrid, active-set, clarabel, osqp
     #[arg(long, value_name = "NAME")]
     pub(super) backend: Option<BackendName>,
     /// Folder for the results [default: out/CASE]
@@ -90,7 +90,7 @@ pub(super) struct ConvergeArguments {
     /// Number of meshes, each refined once more
     #[arg(long, value_name = "N", default_value_t = 5)]
     pub(super) levels: usize,
-    /// Solver, not the case file's: auto, multigrid, active-set, clarabel, osqp
+    /// Solver: auto, multigrid, active-set, clarabel, osqp
     #[arg(long, value_name = "NAME")]
     pub(super) backend: Option<BackendName>,
     /// Folder, whose levels are kept [default: out/CASE]

@@ -67,7 +67,9 @@ fn columns_of_backends(
     progress: &Progress,
 ) -> Result<Vec<Column>, Failure> {
     let mut columns = Vec::new();
-    for backend in BackendName::ALL.into_iter().filter(|backend| backend.is_built()) {
+    // The choice among them is one of them.
+    let shown = |backend: &BackendName| backend.is_built() && *backend != BackendName::Auto;
+    for backend in BackendName::ALL.into_iter().filter(shown) {
         let ways = if backend.is_polished() { [true, false].as_slice() } else { &[true] };
         for &polish in ways {
             let settings = SolverSettings { backend, polish, ..setup.case.solver.clone() };
@@ -85,19 +87,27 @@ fn column(
 ) -> Result<Column, Failure> {
     let backend = settings.backend;
     let way = match (backend.is_polished(), settings.polish) {
-        (false, _) => "exact",
+        (false, _) => "",
         (true, true) => "polished",
         (true, false) => AS_IT_IS,
     };
-    progress.stage(format!("{} ({way})", backend.as_str()));
+    progress.stage(format!("{} {way}", backend.as_str()));
     let candidate = solver(settings.backend)
         .solve(d, &options(settings))
         .map_err(|error| Failure::NotCertified(format!("{name}: {error}")))?;
     Ok(Column {
-        heading: [backend.as_str().into(), way.into()],
+        heading: heading(backend, way),
         must_certify: settings.polish,
         result: certify(d, candidate, settings.tolerance),
     })
+}
+
+/// Two lines that fit into a column: the names of the others are too long to have a way beside them.
+fn heading(backend: BackendName, way: &str) -> [String; 2] {
+    match backend.as_str().split_once('-') {
+        Some((first, second)) => [format!("{first}-"), second.into()],
+        None => [backend.as_str().into(), way.into()],
+    }
 }
 
 /// The identities of the reconstructed fluxes `t_ih` of both membranes, for each choice: relative defects.
@@ -128,6 +138,11 @@ fn flux_lines(
     Ok(text)
 }
 
+/// A name that fits before six columns.
+fn shortened(name: &str) -> &str {
+    if name == "variational_inequality" { "variational_ineq." } else { name }
+}
+
 /// A row for each residual, a column for each result.
 fn table(columns: &[Column]) -> String {
     let residuals: Vec<Option<&Residuals>> = columns
@@ -138,8 +153,8 @@ fn table(columns: &[Column]) -> String {
         })
         .collect();
     let row = |name: &str, cell: &dyn Fn(usize) -> String| {
-        let cells: String = (0..columns.len()).map(|k| format!(" {:>10}", cell(k))).collect();
-        format!("  {name:22}{cells}\n")
+        let cells: String = (0..columns.len()).map(|k| format!(" {:>9}", cell(k))).collect();
+        format!("  {:17}{cells}\n", shortened(name))
     };
     let heading = |line: usize| row("", &|k| columns[k].heading[line].clone());
     let solved = |k: usize, value: &dyn Fn(&ContactSolution) -> String| {
