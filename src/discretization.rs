@@ -1,5 +1,6 @@
 //! A problem on a mesh: everything that the discrete problem (3.4) is made of.
 
+use rayon::prelude::*;
 use sprs::CsMat;
 use thiserror::Error;
 
@@ -9,6 +10,9 @@ use crate::problem::ContactProblem;
 
 /// Tensions, displacements and loads must lie between the inverse of this and this: energies must not overflow.
 const LARGEST: f64 = 1e40;
+
+/// Rows that are worked on together.
+const BLOCK: usize = 4096;
 
 /// The data of (3.4) on a mesh: `K`, `F_i`, `g_h`, the numbering of the unknowns, `|D_a|`.
 ///
@@ -125,7 +129,7 @@ impl<'m> Discretization<'m> {
     /// `mu_i K u_i - F_i` for membrane `i` (0 or 1) at the unknowns, for displacements `u` over vertices. Unit: force.
     pub fn imbalance(&self, i: usize, u: &[f64]) -> Vec<f64> {
         let row = |&a: &usize| self.tension[i] * self.stiffness_row(a, |b| u[b]) - self.load[i][a];
-        self.interior.iter().map(row).collect()
+        self.interior.par_iter().with_min_len(BLOCK).map(row).collect()
     }
 
     /// The size of the terms that cancel in [`imbalance`](Self::imbalance) of membrane `i` at the unknowns:
@@ -138,17 +142,20 @@ impl<'m> Discretization<'m> {
         let gap_tension = mu1 * (mu2 / (mu1 + mu2));
         let size =
             |b: usize| self.tension[i] * displacement[i][b].abs() + gap_tension * (u1[b] - u2[b]).abs();
-        let terms = |a: usize| {
-            let row = self.stiffness.outer_view(a).expect("a vertex has a row");
-            row.iter().map(|(b, k)| k.abs() * size(b)).sum::<f64>() + self.load[i][a].abs()
-        };
-        self.interior.iter().map(|&a| terms(a)).collect()
+        let terms =
+            |&a: &usize| self.row(a).map(|(&b, k)| k.abs() * size(b)).sum::<f64>() + self.load[i][a].abs();
+        self.interior.par_iter().with_min_len(BLOCK).map(terms).collect()
     }
 
     /// `(K v)_a`.
     pub(crate) fn stiffness_row(&self, a: usize, v: impl Fn(usize) -> f64) -> f64 {
-        let row = self.stiffness.outer_view(a).expect("a vertex has a row");
-        row.iter().map(|(b, k)| k * v(b)).sum()
+        self.row(a).map(|(&b, k)| k * v(b)).sum()
+    }
+
+    /// The columns and entries of row `a` of `K`.
+    fn row(&self, a: usize) -> impl Iterator<Item = (&usize, &f64)> {
+        let range = self.stiffness.indptr().outer_inds_sz(a);
+        self.stiffness.indices()[range.clone()].iter().zip(&self.stiffness.data()[range])
     }
 
     /// A function over vertices from its values at the unknowns and on the boundary (zero where unused).

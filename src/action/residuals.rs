@@ -1,8 +1,13 @@
 //! How far displacements, multipliers and action are from solving the full discrete problem (4.7).
 
+use rayon::prelude::*;
+
 use super::Action;
 use crate::discretization::Discretization;
 use crate::mesh::VertexKind;
+
+/// Vertices that are worked on together.
+const BLOCK: usize = 4096;
 
 /// One check: the largest defect over all vertices, relative to the [`Scales`](crate::discretization::Scales) of the
 /// data. A NaN makes it infinite.
@@ -58,20 +63,20 @@ impl Residuals {
         );
         assert_eq!(multiplier.len(), d.interior().len(), "multipliers are over unknowns");
         let (force, length) = (scales.force_density, scales.displacement);
-        let unknowns = || d.interior().iter().copied().enumerate();
+        let unknowns = || d.interior().par_iter().with_min_len(BLOCK).copied().enumerate();
         let density = |k: usize, a: usize| multiplier[k] / d.dual_area()[a];
         let gap = |a: usize| u1[a] - u2[a];
         let [lambda_1, lambda_2] = &action.from_membrane;
         let [rounding_1, rounding_2] = &action.rounding;
 
-        let stationarity = unknowns().flat_map(|(k, a)| {
+        let stationarity = unknowns().flat_map_iter(|(k, a)| {
             [(lambda_1, rounding_1), (lambda_2, rounding_2)]
                 .map(|(lambda, rounding)| ((lambda[k] - density(k, a)).abs() / force, rounding[k] / force))
         });
-        let held = (0..u1.len()).filter(|&a| d.mesh().kind()[a] != VertexKind::Interior);
-        let trace = held.flat_map(|a| [(u1[a] - d.height()[a]).abs(), u2[a].abs()]);
+        let held = (0..u1.len()).into_par_iter().filter(|&a| d.mesh().kind()[a] != VertexKind::Interior);
+        let trace = held.flat_map_iter(|a| [(u1[a] - d.height()[a]).abs(), u2[a].abs()]);
         let primal = unknowns().map(|(_, a)| -gap(a)).chain(trace).map(|defect| (defect / length, 0.0));
-        let dual_sign = unknowns().flat_map(|(k, a)| {
+        let dual_sign = unknowns().flat_map_iter(|(k, a)| {
             [(density(k, a), 0.0), (lambda_1[k], rounding_1[k]), (lambda_2[k], rounding_2[k])]
                 .map(|(lambda, rounding)| (-lambda / force, rounding / force))
         });
@@ -118,12 +123,17 @@ impl Residuals {
 
 impl Residual {
     /// The largest of `(defect, rounding allowed there)`.
-    fn largest(defects: impl Iterator<Item = (f64, f64)>) -> Self {
+    fn largest(defects: impl ParallelIterator<Item = (f64, f64)>) -> Self {
         let or_infinite = |x: f64| if x.is_nan() { f64::INFINITY } else { x };
-        defects.fold(Self::default(), |largest, (defect, rounding)| Self {
-            value: largest.value.max(or_infinite(defect)),
-            beyond_rounding: largest.beyond_rounding.max(or_infinite(defect - rounding)),
-        })
+        let larger = |a: Self, b: Self| Self {
+            value: a.value.max(b.value),
+            beyond_rounding: a.beyond_rounding.max(b.beyond_rounding),
+        };
+        let of_one = |(defect, rounding)| Self {
+            value: or_infinite(defect),
+            beyond_rounding: or_infinite(defect - rounding),
+        };
+        defects.map(of_one).reduce(Self::default, larger)
     }
 }
 
@@ -141,7 +151,7 @@ fn variational_inequality(d: &Discretization, action: &Action, gap: impl Fn(usiz
         return Residual::default();
     }
     let unit = scales.force_density * scales.displacement * area;
-    Residual::largest(std::iter::once((work.abs() / unit, rounding / unit)))
+    Residual::largest(rayon::iter::once((work.abs() / unit, rounding / unit)))
 }
 
 /// `int phi_a` over vertices, triangle by triangle: what `|D_a|` must be by (4.17).

@@ -1,8 +1,13 @@
 //! A certified solution.
 
+use rayon::prelude::*;
+
 use super::{Action, Residuals};
 use crate::discretization::Discretization;
 use crate::solver::Statistics;
+
+/// Terms that are added up together.
+const BLOCK: usize = 4096;
 
 /// Membranes closer than this fraction of the displacements' scale touch: the rounding of the displacements.
 const TOUCHING: f64 = 1e-12;
@@ -32,8 +37,8 @@ impl ContactSolution {
     ) -> Self {
         let lambda = nonzero_beyond_rounding(d, action);
         let contact = contact_set(d, &displacement, &lambda);
-        let sum_cells = |value: &dyn Fn(usize) -> f64| -> f64 {
-            d.interior().iter().map(|&a| d.dual_area()[a] * value(a)).sum()
+        let sum_cells = |value: &(dyn Fn(usize) -> f64 + Sync)| {
+            sum(d.interior().len(), |k| d.dual_area()[d.interior()[k]] * value(d.interior()[k]))
         };
         Self {
             energy: energy(d, &displacement),
@@ -100,7 +105,8 @@ fn nonzero_beyond_rounding(d: &Discretization, action: &Action) -> Vec<f64> {
         let lambda = action.lambda[k];
         if lambda.abs() <= action.lambda_rounding(d, k) { 0.0 } else { lambda }
     };
-    d.extend(&(0..d.interior().len()).map(cleaned).collect::<Vec<_>>(), |_| 0.0)
+    let over_unknowns = (0..d.interior().len()).into_par_iter().with_min_len(BLOCK).map(cleaned);
+    d.extend(&over_unknowns.collect::<Vec<_>>(), |_| 0.0)
 }
 
 /// A vertex is in contact when the gap is zero to rounding or, relative to the data, smaller than the action: for an
@@ -120,7 +126,14 @@ fn energy(d: &Discretization, displacement: &[Vec<f64>; 2]) -> f64 {
         .map(|i| {
             let u = &displacement[i];
             let at = |a: usize| (0.5 * d.tension()[i] * d.stiffness_row(a, |b| u[b]) - d.load()[i][a]) * u[a];
-            (0..u.len()).map(at).sum::<f64>()
+            sum(u.len(), at)
         })
         .sum()
+}
+
+/// `term(0) + ... + term(count - 1)`, in parallel, in an order that does not depend on the number of threads.
+fn sum(count: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
+    let of_block = |block: usize| (block * BLOCK..((block + 1) * BLOCK).min(count)).map(&term).sum::<f64>();
+    let blocks: Vec<f64> = (0..count.div_ceil(BLOCK)).into_par_iter().map(of_block).collect();
+    blocks.into_iter().sum()
 }

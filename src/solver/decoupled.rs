@@ -7,8 +7,13 @@
 //!
 //! one Poisson problem and one zero-obstacle problem, and back `u1 = (s + mu2 w) / M`, `u2 = (s - mu1 w) / M`.
 
+use rayon::prelude::*;
+
 use crate::discretization::Discretization;
 use crate::mesh::VertexKind;
+
+/// Vertices that are worked on together.
+const BLOCK: usize = 4096;
 
 /// The data of the two halves on a discretization, each with the matrix `K`: the gap's divided by `m`.
 pub(crate) struct Decoupled<'d, 'm> {
@@ -55,14 +60,15 @@ impl<'d, 'm> Decoupled<'d, 'm> {
         let [mu1, mu2] = self.d.tension();
         let total = mu1 + mu2;
         let kind = self.d.mesh().kind();
-        let over_vertices = |inside: &dyn Fn(usize) -> f64, boundary: &dyn Fn(usize) -> f64| -> Vec<f64> {
-            let value = |a: usize| match kind[a] {
-                VertexKind::Interior => inside(a),
-                VertexKind::Boundary => boundary(a),
-                VertexKind::Unused => 0.0,
+        let over_vertices =
+            |inside: &(dyn Fn(usize) -> f64 + Sync), boundary: &(dyn Fn(usize) -> f64 + Sync)| -> Vec<f64> {
+                let value = |a: usize| match kind[a] {
+                    VertexKind::Interior => inside(a),
+                    VertexKind::Boundary => boundary(a),
+                    VertexKind::Unused => 0.0,
+                };
+                (0..kind.len()).into_par_iter().with_min_len(BLOCK).map(value).collect()
             };
-            (0..kind.len()).map(value).collect()
-        };
         let u1 = over_vertices(&|a| s[a] / total + self.share[1] * w[a], &|a| self.d.height()[a]);
         let u2 = over_vertices(&|a| s[a] / total - self.share[0] * w[a], &|_| 0.0);
         [u1, u2]

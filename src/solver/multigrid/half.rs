@@ -74,11 +74,12 @@ pub(super) fn solve(
         Some(start) => on_level(hierarchy.finest()).feasible(start),
         None => {
             let mut x = vec![0.0; hierarchy.levels()[1].pattern.rows()];
-            for l in 1..hierarchy.finest() {
+            let coarser = heights.iter().enumerate().take(hierarchy.finest()).skip(1);
+            for (l, height) in coarser {
                 let limits = Limits { cycles: COARSE_CYCLES, ..*limits };
                 let found = Cycles::new(l, on_level(l), x, &mut coarse)?.run(&limits, 0.0)?;
                 cycles.extend(found.cycles);
-                x = prolonged(hierarchy, l, found.x, &heights[l], lower);
+                x = prolonged(hierarchy, l, found.x, height, lower);
             }
             x
         }
