@@ -18,6 +18,7 @@ pub(super) use transfer::Transfer;
 use rayon::prelude::*;
 
 use crate::discretization::Discretization;
+use crate::mesh::VertexKind;
 use coarsening::coarsened;
 use galerkin::galerkin;
 use matrix::{BLOCK, compact_stiffness, reordered};
@@ -56,9 +57,9 @@ impl Hierarchy {
     pub(super) fn new(d: &Discretization) -> Self {
         let mut orders = orders(d);
         let finest_order = orders.as_mut().and_then(Vec::pop);
-        let (pattern, values) = compact_stiffness(d, finest_order.as_deref());
-        let (finest, rows) = Level::colored(pattern, values);
-        let vertex = composed(finest_order.as_deref(), rows);
+        let (coloring, vertex) = finest_coloring(d, finest_order.as_deref());
+        let (pattern, values) = compact_stiffness(d, &vertex);
+        let finest = Level { pattern, values, coloring, transfer: Transfer::default() };
         let mut order = vertex.clone();
         let mut finest_first = vec![finest];
         for parents in d.mesh().ancestry().iter().rev() {
@@ -134,6 +135,29 @@ impl Hierarchy {
         }
         (loads, heights)
     }
+}
+
+/// Windows and colours of the finest level, and the vertices of its rows; `order` is the order that the windows follow.
+fn finest_coloring(d: &Discretization, order: Option<&[u32]>) -> (Coloring, Vec<u32>) {
+    let (k, kind) = (d.stiffness(), d.mesh().kind());
+    let position = order.map(inverse);
+    let vertex = |i: usize| order.map_or(i, |order| order[i] as usize);
+    let row = |a: usize| {
+        let range = k.indptr().outer_inds_sz(a);
+        k.indices()[range.clone()].iter().zip(&k.data()[range]).map(|(&b, &value)| (b, value))
+    };
+    let place = |b: usize| position.as_ref().map_or(b, |position| position[b] as usize);
+    let coupled = |i: usize| {
+        let a = vertex(i);
+        let diagonal = row(a).find(|&(b, _)| b == a).map_or(0.0, |(_, value)| value);
+        let free = kind[a] == VertexKind::Interior;
+        let entries = row(a).filter(move |&(b, value)| free && b != a && value.abs() > UNCOUPLED * diagonal);
+        entries.filter(|&(b, _)| kind[b] == VertexKind::Interior).map(|(b, _)| place(b))
+    };
+    let reach = |i: usize| row(vertex(i)).map(|(b, _)| i.abs_diff(place(b))).max().unwrap_or(0);
+    let bandwidth = (0..k.rows()).into_par_iter().with_min_len(BLOCK).map(reach).max().unwrap_or(0);
+    let (coloring, rows) = Coloring::new(k.rows(), bandwidth, coupled);
+    (coloring, composed(order, rows))
 }
 
 /// Makes the level below the last one, unless nothing is left to solve for there. Returns the order of its rows.

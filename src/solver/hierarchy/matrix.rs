@@ -65,8 +65,17 @@ impl Values {
     #[inline(always)]
     pub(in crate::solver) fn off_diagonal_product(&self, pattern: &Pattern, i: usize, x: &[f64]) -> f64 {
         let range = pattern.range(i);
+        let (mut columns, mut values) = (&pattern.column[range.clone()], &self.off_diagonal[range]);
         let mut sum = 0.0;
-        for (&j, &a) in pattern.column[range.clone()].iter().zip(&self.off_diagonal[range]) {
+        // Four at once: most rows have four or six entries, and a loop costs more than they do.
+        while let (Some(([j, k, l, m], columns_left)), Some(([a, b, c, d], values_left))) =
+            (columns.split_first_chunk::<4>(), values.split_first_chunk::<4>())
+        {
+            let x = |j: &u32| x[*j as usize];
+            sum += (a * x(j) + b * x(k)) + (c * x(l) + d * x(m));
+            (columns, values) = (columns_left, values_left);
+        }
+        for (&j, &a) in columns.iter().zip(values) {
             sum += a * x[j as usize];
         }
         sum
@@ -129,14 +138,14 @@ pub(super) fn reordered(
 }
 
 /// `K` with empty rows for held vertices, the vertices in this order.
-pub(super) fn compact_stiffness(d: &Discretization, order: Option<&[u32]>) -> (Pattern, Values) {
+pub(super) fn compact_stiffness(d: &Discretization, order: &[u32]) -> (Pattern, Values) {
     let k = d.stiffness();
     let kind = d.mesh().kind();
-    let position = order.map(inverse);
+    let position = inverse(order);
     let block = |block: usize| {
         let mut rows = Rows::default();
         for i in block * BLOCK..((block + 1) * BLOCK).min(k.rows()) {
-            let a = order.map_or(i, |order| order[i] as usize);
+            let a = order[i] as usize;
             let mut diagonal = 0.0;
             if kind[a] == VertexKind::Interior {
                 let row = k.outer_view(a).expect("a vertex has a row");
@@ -144,7 +153,7 @@ pub(super) fn compact_stiffness(d: &Discretization, order: Option<&[u32]>) -> (P
                     if b == a {
                         diagonal = value;
                     } else {
-                        rows.column.push(position.as_ref().map_or(b as u32, |position| position[b]));
+                        rows.column.push(position[b]);
                         rows.off_diagonal.push(value);
                     }
                 }

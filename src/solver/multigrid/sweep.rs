@@ -110,16 +110,19 @@ impl Bounded<'_> {
 
     /// Residual, energy and restriction of some rows.
     fn settle(&self, rows: Range<usize>, x: &[f64], coarse: &mut [f64], found: &mut Found) {
+        let (mut energy, mut violation) = (0.0, found.violation);
         for i in rows {
             let r = self.residual(i, x);
-            found.energy -= 0.5 * x[i] * r;
+            energy -= 0.5 * x[i] * r;
             if x[i] <= self.lower {
-                found.violation = larger(found.violation, r * self.weight[i]);
+                violation = larger(violation, r * self.weight[i]);
             } else {
-                found.violation = larger(found.violation, r.abs() * self.weight[i]);
+                violation = larger(violation, r.abs() * self.weight[i]);
                 self.level.transfer.spread(i, r, coarse);
             }
         }
+        found.energy += energy;
+        found.violation = violation;
     }
 
     /// Which rows are at the bound; returns their part of the energy as far as the residual has none in it.
