@@ -4,7 +4,7 @@ mod common;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use membrane_contact::qp::Clarabel;
-use membrane_contact::solver::{ActiveSet, ContactSolver, QpSolver, SolverOptions};
+use membrane_contact::solver::{ActiveSet, ContactSolver, Multigrid, QpSolver, SolverOptions};
 use membrane_contact::study::comparison::CsrProduct;
 
 fn solvers() -> Vec<Box<dyn ContactSolver>> {
@@ -13,6 +13,7 @@ fn solvers() -> Vec<Box<dyn ContactSolver>> {
         #[cfg(feature = "osqp")]
         Box::new(QpSolver::new(membrane_contact::qp::Osqp)),
         Box::new(ActiveSet),
+        Box::new(Multigrid),
     ]
 }
 

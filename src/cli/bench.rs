@@ -27,7 +27,7 @@ pub(super) fn run(arguments: &BenchArguments) -> Result<(), Failure> {
     match &arguments.case {
         _ if arguments.no_run => bench.run_nothing()?,
         None => bench.run_family(&arguments.sizes)?,
-        Some(path) => bench.run_case(path.clone(), arguments.levels)?,
+        Some(path) => bench.run_case(path.clone(), arguments)?,
     }
     let Bench { title, rows, measured, folder, .. } = bench;
     write_results(&folder, &title, &rows)?;
@@ -68,7 +68,11 @@ impl<'a> Bench<'a> {
                 solvers.push(backend);
             }
         }
-        let options = SolverOptions { time_limit: Some(arguments.time_limit), ..SolverOptions::default() };
+        let mut options =
+            SolverOptions { time_limit: Some(arguments.time_limit), ..SolverOptions::default() };
+        if let Some(tolerance) = arguments.tolerance {
+            options.tolerance = tolerance;
+        }
         Ok(Self {
             title: "two membranes over the unit square".into(),
             solvers: if solvers.is_empty() { built() } else { solvers },
@@ -115,12 +119,13 @@ impl<'a> Bench<'a> {
     }
 
     /// A case on its mesh and its refinements.
-    fn run_case(&mut self, path: PathBuf, levels: usize) -> Result<(), Failure> {
+    fn run_case(&mut self, path: PathBuf, bench: &BenchArguments) -> Result<(), Failure> {
+        let levels = bench.levels;
         let arguments = CaseArguments { path, refine: 0, quiet: false };
         let Setup { name, case, mut family, .. } = Setup::new(&arguments, self.progress)?;
         check_refinements(&name, &family, levels - 1)?;
         self.title.clone_from(&case.title);
-        self.options.tolerance = case.solver.tolerance;
+        self.options.tolerance = bench.tolerance.unwrap_or(case.solver.tolerance);
         let stem = arguments.path.file_stem().unwrap_or(arguments.path.as_os_str());
         let stem = stem.to_string_lossy();
         make_folder(&self.folder)?;
