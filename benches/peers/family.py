@@ -189,10 +189,15 @@ def row(cells: int, solver: str, origin: str, threads: int, run: Measurement, ve
 class Table:
     """A CSV file that grows row by row, so that what is measured is kept when a run is broken off."""
 
-    def __init__(self, path: Path, log: Callable[[str], None] = print) -> None:
+    def __init__(self, path: Path, log: Callable[[str], None] = print, keep: bool = False) -> None:
+        """Begins the file anew, or, with `keep`, goes on where one with the same columns ends."""
         self._path, self._log = path, log
         path.parent.mkdir(parents=True, exist_ok=True)
-        self._write([field.name for field in fields(Row)], "w")
+        names = [field.name for field in fields(Row)]
+        if not (keep and path.exists()):
+            self._write(names, "w")
+        elif path.read_text(encoding="utf-8").partition("\n")[0] != ",".join(names):
+            raise SystemExit(f"{path} has other columns: name another file by --out")
 
     def add(self, entry: Row) -> None:
         """Appends a row and tells of it in one line."""
