@@ -138,7 +138,9 @@ impl<'c, 'h> Cycles<'c, 'h> {
         let status = loop {
             let cycles = history.len() - 1;
             let found = history[cycles];
-            if found.violation <= tolerance && (cycles == 0 || self.changed.is_empty()) {
+            // Vertices at the rim that are undecided within rounding may change for ever: one more cycle is for them.
+            let stays = cycles == 0 || self.changed.is_empty() || history[cycles - 1].violation <= tolerance;
+            if found.violation <= tolerance && stays {
                 break Status::Solved;
             }
             if cycles >= limits.cycles {
