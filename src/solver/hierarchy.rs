@@ -9,6 +9,8 @@ mod galerkin;
 mod matrix;
 mod ordering;
 mod transfer;
+#[cfg(test)]
+mod tests;
 
 pub(super) use coloring::Coloring;
 pub(super) use galerkin::RowSum;
