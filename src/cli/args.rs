@@ -115,7 +115,7 @@ pub(super) struct BenchArguments {
     /// Seconds a solve may take
     #[arg(long, value_name = "S", default_value = "60", value_parser = seconds, allow_negative_numbers = true)]
     pub(super) time_limit: f64,
-    /// Largest relative residual, in place of the case file's
+    /// Largest relative residual, not the case file's
     #[arg(long, value_name = "T", value_parser = tolerance, allow_negative_numbers = true)]
     pub(super) tolerance: Option<f64>,
     /// Also show rows of such a bench.csv; repeatable
