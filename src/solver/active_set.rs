@@ -24,7 +24,7 @@ const MAX_STEPS: usize = 2000;
 ///
 /// Works on any mesh. It ends with the exact contact set, so displacements and action are right to rounding. Every step
 /// factors a matrix anew, of a pattern that is analysed once for each level. A contact set that would come back is
-/// noticed, see [`Obstacle::settle`].
+/// noticed, and left by single repairs.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ActiveSet;
 

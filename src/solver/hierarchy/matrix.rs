@@ -142,10 +142,10 @@ pub(super) fn compact_stiffness(d: &Discretization, order: &[u32]) -> (Pattern, 
     let k = d.stiffness();
     let kind = d.mesh().kind();
     let position = inverse(order);
-    let block = |block: usize| {
+    let block = |block: &[u32]| {
         let mut rows = Rows::default();
-        for i in block * BLOCK..((block + 1) * BLOCK).min(k.rows()) {
-            let a = order[i] as usize;
+        for &a in block {
+            let a = a as usize;
             let mut diagonal = 0.0;
             if kind[a] == VertexKind::Interior {
                 let row = k.outer_view(a).expect("a vertex has a row");
@@ -163,5 +163,5 @@ pub(super) fn compact_stiffness(d: &Discretization, order: &[u32]) -> (Pattern, 
         }
         rows
     };
-    assemble((0..k.rows().div_ceil(BLOCK)).into_par_iter().map(block).collect())
+    assemble(order.par_chunks(BLOCK).map(block).collect())
 }
