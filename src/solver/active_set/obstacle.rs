@@ -1,5 +1,7 @@
 //! The obstacle half on one level, and the repair of its contact set.
 
+use std::collections::HashSet;
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::time::Instant;
 
 use sprs::CsMat;
@@ -18,10 +20,6 @@ const GAP_ROUNDING: f64 = 1e-12;
 /// A vertex is taken for touching when its multiplier is so much larger than its gap, each in units of the data. A guess
 /// that is too small is repaired in fewer steps than one that is too large: all that has passed through is seen at once.
 const CAUTION: f64 = 30.0;
-
-/// So many repairs in a row may leave more wrong than the best contact set so far, before they become single ones
-/// (Judice, Pires, Comput. Oper. Res. 21 (1994) 587, take ten).
-const PATIENCE: usize = 10;
 
 /// When to stop although the contact set is not consistent yet.
 pub(in crate::solver) struct Limits {
@@ -62,15 +60,16 @@ impl<'k> Obstacle<'k> {
     /// join it. Returns the result, whether it is consistent, and the number of repairs.
     ///
     /// On meshes where `K` is an M-matrix this ends by itself. Elsewhere, and with rounding at vertices that touch without
-    /// pushing, a contact set could come back: when [`PATIENCE`] repairs have not lowered the number of wrong vertices, only
-    /// the last wrong one is repaired in a step until it falls, which always ends (Murty's rule for positive definite
-    /// matrices).
+    /// pushing, a contact set can come back: then only the last wrong vertex is repaired in a step, which always ends (Murty's
+    /// rule for positive definite matrices), until fewer are wrong than ever before (Judice, Pires, Comput. Oper. Res. 21
+    /// (1994) 587).
     pub(in crate::solver) fn settle(
         &mut self,
         mut active: Vec<bool>,
         limits: &Limits,
     ) -> Result<(Gap, Status, usize), NotFactored> {
-        let (mut fewest, mut patience, mut repairs) = (usize::MAX, PATIENCE, 0);
+        let (mut fewest, mut single, mut repairs) = (usize::MAX, false, 0);
+        let mut seen = HashSet::new();
         loop {
             let gap = self.solve(&active)?;
             let wrong = self.wrong(&active, &gap);
@@ -86,12 +85,9 @@ impl<'k> Obstacle<'k> {
             if let Some(status) = status {
                 return Ok((gap, status, repairs));
             }
-            if wrong.len() < fewest {
-                (fewest, patience) = (wrong.len(), PATIENCE);
-            } else {
-                patience = patience.saturating_sub(1);
-            }
-            let repaired = if patience > 0 { &wrong[..] } else { &wrong[wrong.len() - 1..] };
+            single = wrong.len() >= fewest && (single || !seen.insert(fingerprint(&active)));
+            fewest = fewest.min(wrong.len());
+            let repaired = if single { &wrong[wrong.len() - 1..] } else { &wrong[..] };
             repaired.iter().for_each(|&i| active[i] = !active[i]);
             repairs += 1;
         }
@@ -136,6 +132,13 @@ impl<'k> Obstacle<'k> {
     fn row(&self, i: usize, term: impl Fn(f64, usize) -> f64) -> f64 {
         self.k.outer_view(i).expect("an unknown has a row").iter().map(|(j, &k)| term(k, j)).sum()
     }
+}
+
+/// Tells contact sets apart; two that are taken for one cost single repairs, no more.
+fn fingerprint(active: &[bool]) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    active.hash(&mut hasher);
+    hasher.finish()
 }
 
 /// The vertices that touch, as displacements and multipliers have it.

@@ -51,8 +51,8 @@ pub(super) struct Iterate<'a> {
 }
 
 impl Bounded<'_> {
-    /// `x = max(lower, old + P c)` where `old` is free, projected Gauss-Seidel sweeps through the colours downwards and
-    /// upwards, the residual and its restriction. (Rows of the last colour have no residual then.)
+    /// `x = max(lower, old + P c)` where `old` is free, projected Gauss-Seidel sweeps through the colours, the
+    /// residual and its restriction. (Rows of the last colour have no residual then.)
     pub(super) fn correct_and_relax(
         &self,
         old: &[f64],
@@ -62,14 +62,14 @@ impl Bounded<'_> {
         let Iterate { x, frozen, changed, coarse } = iterate;
         let coloring = &self.level.coloring;
         let colors = coloring.colors();
-        let order: Vec<usize> = (0..SWEEPS).flat_map(|_| 0..colors).collect();
+        let relaxations = SWEEPS * colors;
         coarse.fill(0.0);
         let mut found = Found::default();
-        coloring.pipeline(order.len() + 2, |stage, window| {
+        coloring.pipeline(relaxations + 2, |stage, window| {
             if stage == 0 {
                 found.cut += self.correct(coloring.window(window), old, correction, x);
-            } else if stage <= order.len() {
-                self.relax(coloring.rows(window, order[stage - 1]), x);
+            } else if stage <= relaxations {
+                self.relax(coloring.rows(window, (stage - 1) % colors), x);
             } else {
                 let settled = coloring.window(window).start..coloring.rows(window, colors - 1).start;
                 self.settle(settled, x, coarse, &mut found);
