@@ -1,16 +1,19 @@
-//! Errors of solutions: their norms against an exact solution.
+//! Errors of solutions: guaranteed bounds, and norms against an exact solution.
 
+mod bound;
 mod lift;
 mod multigrid;
 mod norms;
 #[cfg(test)]
 mod tests;
 
+pub use bound::{BoundParts, ErrorBound};
 pub use lift::DualNorm;
 pub use norms::{ContactAreas, ErrorNorms};
 
 use thiserror::Error;
 
+use crate::fem::NotFinite;
 use crate::mesh::MeshError;
 
 /// The error of a solution cannot be measured.
@@ -26,6 +29,9 @@ pub enum MeasureError {
         /// Vertices of the mesh.
         vertices: usize,
     },
+    /// A load is not finite.
+    #[error("a load {0}: it must be finite on the whole domain")]
+    Load(#[from] NotFinite),
     /// The triangles are too small to be divided.
     #[error("the triangles cannot be divided for the lift of the action: {0}")]
     SubTriangulation(#[from] MeshError),

@@ -13,6 +13,6 @@ pub use quadrature::{DEGREE_4, TriangleRule};
 pub use stiffness::stiffness;
 
 pub(crate) use cut::CutRule;
-pub(crate) use element::local_stiffness;
-pub(crate) use load::load_around;
+pub(crate) use element::{gradient, local_stiffness};
+pub(crate) use load::{ElementMoments, element_moments, load_around};
 pub(crate) use stiffness::stiffness_around;

@@ -20,10 +20,13 @@ mod field;
 mod reconstruct;
 #[cfg(test)]
 mod tests;
+mod wedges;
 
 pub use defects::FluxDefects;
 pub use field::{Flux, FluxCells};
 pub use reconstruct::{Reconstructor, discrete_flux};
+
+pub(crate) use wedges::WedgeFluxes;
 
 /// How the fluxes through the segments that leave a vertex are chosen.
 ///

@@ -6,8 +6,8 @@ use super::MeasureError;
 use super::lift::{DualNorm, dual_norm};
 use crate::action::ContactSolution;
 use crate::discretization::Discretization;
-use crate::fem::CutRule;
-use crate::mesh::{Mesh, SubTriangulation, VertexKind, twice_signed_area};
+use crate::fem::{CutRule, gradient};
+use crate::mesh::{Mesh, SubTriangulation, VertexKind};
 use crate::problem::{Domain, ExactSolution};
 
 /// Subdivisions of the triangles of `S_h` that a curve crosses: their parts are smaller than `h / 30`.
@@ -169,15 +169,8 @@ struct Affine {
 
 impl Affine {
     /// The function with these values at the corners of a triangle.
-    fn through(corners: [[f64; 2]; 3], [u, v, w]: [f64; 3]) -> Self {
-        let [a, b, c] = corners;
-        let scale = 1.0 / twice_signed_area(corners);
-        let (along_b, along_c) = (scale * (v - u), scale * (w - u));
-        let gradient = [
-            along_b * (c[1] - a[1]) - along_c * (b[1] - a[1]),
-            along_c * (b[0] - a[0]) - along_b * (c[0] - a[0]),
-        ];
-        Self { origin: a, value: u, gradient }
+    fn through(corners: [[f64; 2]; 3], values: [f64; 3]) -> Self {
+        Self { origin: corners[0], value: values[0], gradient: gradient(corners, values) }
     }
 
     fn at(&self, [x, y]: [f64; 2]) -> f64 {

@@ -12,13 +12,13 @@ use crate::mesh::{Mesh, Pattern, disk, l_shape, rectangle};
 use crate::problem::{Case, ContactProblem, Domain, ExactSolution};
 use crate::solver::{ActiveSet, ContactSolver, SolverOptions};
 
-fn exact(case: Case, parameters: &[(&str, f64)]) -> ExactSolution {
+pub(super) fn exact(case: Case, parameters: &[(&str, f64)]) -> ExactSolution {
     let parameters: BTreeMap<_, _> =
         parameters.iter().map(|&(name, value)| (name.to_owned(), value)).collect();
     case.solution(&parameters).unwrap()
 }
 
-fn mesh(domain: &Domain, cells: usize) -> Mesh {
+pub(super) fn mesh(domain: &Domain, cells: usize) -> Mesh {
     match *domain {
         Domain::Rectangle { lower, upper } => rectangle(lower, upper, [cells; 2], Pattern::Right),
         Domain::LShape { half_width } => l_shape(half_width, cells, Pattern::Right),
@@ -28,13 +28,13 @@ fn mesh(domain: &Domain, cells: usize) -> Mesh {
     .unwrap()
 }
 
-fn problem(exact: &ExactSolution) -> ContactProblem {
+pub(super) fn problem(exact: &ExactSolution) -> ContactProblem {
     let [mu1, mu2] = exact.tension();
     let [f1, f2] = exact.load_functions();
     ContactProblem::builder().tension(mu1, mu2).load(f1, f2).height(exact.height_function()).build().unwrap()
 }
 
-fn solve(d: &Discretization) -> ContactSolution {
+pub(super) fn solve(d: &Discretization) -> ContactSolution {
     certify(d, ActiveSet.solve(d, &SolverOptions::default()).unwrap(), 1e-8).unwrap()
 }
 

@@ -4,7 +4,8 @@ use super::Reconstruction;
 use super::fan::{Fan, fans};
 use super::field::{Flux, constant_outward, inner_product, through};
 use crate::discretization::Discretization;
-use crate::mesh::{Mesh, SubTriangulation, twice_signed_area};
+use crate::fem::gradient;
+use crate::mesh::{Mesh, SubTriangulation};
 
 /// Reconstructs fluxes from displacements: what all reconstructions on one mesh share.
 #[derive(Debug, Clone)]
@@ -149,17 +150,10 @@ fn averaged(jumps: &[f64]) -> Vec<Change> {
 pub fn discrete_flux(d: &Discretization, membrane: usize, u: &[f64]) -> Vec<[f64; 2]> {
     assert_eq!(u.len(), d.mesh().points().len(), "displacements are over vertices");
     let mu = d.tension()[membrane];
-    (0..d.mesh().triangles().len()).map(|k| gradient(d.mesh(), k, u).map(|slope| -mu * slope)).collect()
+    (0..d.mesh().triangles().len()).map(|k| flux_on(d.mesh(), k, mu, u)).collect()
 }
 
-/// The gradient on triangle `k` of the P1 function with the values `u`.
-fn gradient(mesh: &Mesh, k: usize, u: &[f64]) -> [f64; 2] {
-    let corners = mesh.corners(k);
-    let [a, b, c] = corners;
-    let [rise_b, rise_c] = [1, 2].map(|i| u[mesh.triangles()[k][i]] - u[mesh.triangles()[k][0]]);
-    let scale = 1.0 / twice_signed_area(corners);
-    [
-        scale * (rise_b * (c[1] - a[1]) - rise_c * (b[1] - a[1])),
-        scale * (rise_c * (b[0] - a[0]) - rise_b * (c[0] - a[0])),
-    ]
+/// `-mu grad u` on triangle `k` of the P1 function with the values `u`.
+pub(super) fn flux_on(mesh: &Mesh, k: usize, mu: f64, u: &[f64]) -> [f64; 2] {
+    gradient(mesh.corners(k), mesh.triangles()[k].map(|a| u[a])).map(|slope| -mu * slope)
 }

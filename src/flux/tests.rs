@@ -3,3 +3,4 @@ mod identities;
 mod lemma_17;
 mod properties;
 mod samples;
+mod wedges;

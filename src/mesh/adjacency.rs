@@ -1,5 +1,7 @@
 //! Who meets whom: the triangles around a vertex, the half edges of a mesh.
 
+use std::ops::Range;
+
 /// The triangles `T_a` around each vertex `a`, in compressed rows, in increasing order.
 #[derive(Debug)]
 pub(crate) struct VertexTriangles {
@@ -15,9 +17,14 @@ impl VertexTriangles {
         Self { start, triangles }
     }
 
+    /// Where the row of vertex `a` lies among all rows.
+    pub(crate) fn row(&self, a: usize) -> Range<usize> {
+        self.start[a]..self.start[a + 1]
+    }
+
     /// The triangles that share vertex `a`.
     pub(crate) fn of(&self, a: usize) -> &[usize] {
-        &self.triangles[self.start[a]..self.start[a + 1]]
+        &self.triangles[self.row(a)]
     }
 }
 

@@ -1,0 +1,227 @@
+//! A guaranteed bound of the energy error, from the full flux reconstruction.
+//!
+//! Let `lt >= 0` be an action and `sigma_i` fluxes in `H(div)`, their residuals `r_i = f_i - (-1)^i lt - div sigma_i` cut into
+//! a part of zero mean on every triangle and a rest `rho_i`. Let `u^` be a pair in the cone that has the trace of the data. Then
+//!
+//! ```text
+//! |||u - u_h|||^2 <= sum_i ( || a_i + b_i || + alpha_i )^2 + 2 sum_i ( (a_i, b_i) + alpha_i || b_i || ) + 2 (lt, w^)
+//!
+//! a_{K,i} = || mu_i^(1/2) grad u_ih + mu_i^(-1/2) sigma_i ||_K + h_K / (pi mu_i^(1/2)) || r_i - rho_i ||_K
+//! b_{K,i} = mu_i^(1/2) |u^_i - u_ih|_{H1(K)}         alpha_i = C_F mu_i^(-1/2) || rho_i ||
+//! ```
+//!
+//! with the norms of sequences over triangles, the constant of Poincare on convex triangles `h_K / pi` (Payne, Weinberger) and
+//! that of Friedrichs on a rectangle `a x b` around the domain, `C_F = 1 / (pi (1/a^2 + 1/b^2)^(1/2))`; the proof is in
+//! `docs/theory.md`. Nothing in it is unknown.
+//!
+//! `u^` differs from `u_h` by `w -> max(w, 0)` at the vertices, for a pair of a solver that is not in the cone, and by a lift of
+//! `g - g_h` in the triangles at the boundary.
+
+mod cells;
+mod trace;
+
+use std::f64::consts::PI;
+
+use cells::{Cells, Sums};
+use trace::Trace;
+
+use super::MeasureError;
+use crate::action::Action;
+use crate::discretization::Discretization;
+use crate::fem::element_moments;
+use crate::flux::WedgeFluxes;
+use crate::mesh::{VertexKind, VertexTriangles};
+use crate::problem::{ContactProblem, Domain};
+
+/// A guaranteed bound of the energy error `|||u - u_h||| = (sum_i mu_i |u_i - u_ih|_{H1}^2)^(1/2)`.
+///
+/// Guaranteed up to the quadrature of loads and height: loads that are polynomials of degree 3 are integrated exactly, and of
+/// others the residual is known as well as the quadrature knows them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ErrorBound {
+    /// The bound. Unit: square root of an energy.
+    pub total: f64,
+    /// `|||u_h|||`.
+    pub energy_norm: f64,
+    /// Where it comes from.
+    pub parts: BoundParts,
+    /// The squared indicators `sum_i (a_{K,i} + b_{K,i})^2 + 2 a_{K,i} b_{K,i} + 2 (lt, w^)_K`: with `alpha_i = 0`, their sum is the
+    /// square of the bound. Shape: `triangles`.
+    pub indicators: Vec<f64>,
+}
+
+/// What a bound consists of, each part as a norm of its own; the bound is at most the sum of the parts, with `boundary` and
+/// `algebraic` counted twice.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct BoundParts {
+    /// The distance of the reconstructed fluxes from `-mu_i grad u_ih`: the discretisation error.
+    pub flux: f64,
+    /// What the mesh does not resolve of the loads.
+    pub oscillation: f64,
+    /// `(2 (lambda_h, w_h))^(1/2)` from triangles that are partly in contact.
+    pub contact: f64,
+    /// From `g - g_h`, and from what lies between a circle and the polygon of the mesh.
+    pub boundary: f64,
+    /// What the solver left: solving more tightly makes this part smaller and no other.
+    pub algebraic: f64,
+}
+
+impl BoundParts {
+    /// The parts with their names.
+    pub fn named(&self) -> [(&'static str, f64); 5] {
+        [
+            ("flux", self.flux),
+            ("oscillation", self.oscillation),
+            ("contact", self.contact),
+            ("boundary", self.boundary),
+            ("algebraic", self.algebraic),
+        ]
+    }
+
+    /// All that a finer mesh makes smaller, a tighter tolerance does not.
+    pub fn discretization(&self) -> f64 {
+        self.flux.hypot(self.contact) + self.oscillation + self.boundary
+    }
+}
+
+impl ErrorBound {
+    /// Bounds the error of any displacements `[u1, u2]` over vertices that have the boundary values `g_h` and 0 of `d`, the
+    /// discretization of `problem`; they need not solve it. Linear time.
+    ///
+    /// `domain` tells what the mesh stands for: with a disk, on whose circle the mesh has its boundary vertices, the membranes
+    /// are continued to the circle, and the bound is one on the disk. In every other case the polygon that the mesh covers
+    /// counts as the domain.
+    ///
+    /// # Errors
+    /// [`MeasureError`] when the displacements are not over the vertices, or a load is not finite.
+    pub fn new(
+        problem: &ContactProblem,
+        domain: Option<&Domain>,
+        d: &Discretization,
+        displacement: &[Vec<f64>; 2],
+    ) -> Result<Self, MeasureError> {
+        let vertices = d.mesh().points().len();
+        if let Some(u) = displacement.iter().find(|u| u.len() != vertices) {
+            return Err(MeasureError::OtherMesh { values: u.len(), vertices });
+        }
+        let moments = [0, 1].map(|i| element_moments(d.mesh(), &problem.load()[i]));
+        let [first, second] = moments;
+        let moments = [first?, second?];
+        let load = [moments[0].as_slice(), moments[1].as_slice()];
+        let around = VertexTriangles::new(vertices, d.mesh().triangles());
+        let push = Push::new(d, displacement, &around);
+        let cells = Cells {
+            d,
+            displacement,
+            lambda: &push.lambda,
+            load,
+            fluxes: WedgeFluxes::new(d, &around, displacement, load, &push.lambda),
+            trace: Trace::new(problem, domain, d, &around),
+        };
+        let (sums, indicators) = cells.sum();
+        Ok(Self::from_sums(d, &sums, friedrichs(d, domain), push.rest_sq, indicators))
+    }
+
+    fn from_sums(
+        d: &Discretization,
+        sums: &Sums,
+        friedrichs: f64,
+        rest_sq: [f64; 2],
+        indicators: Vec<f64>,
+    ) -> Self {
+        let rest = [0, 1].map(|i| friedrichs * (rest_sq[i] / d.tension()[i]).sqrt());
+        let of_membrane = |i: usize| {
+            let changes = 2.0 * rest[i] * sums.changes_sq[i].sqrt();
+            (sums.indicators_sq[i].sqrt() + rest[i]).powi(2) + changes
+        };
+        let others = sums.products + sums.contact + sums.overlap;
+        Self {
+            total: (of_membrane(0) + of_membrane(1) + 2.0 * others).sqrt(),
+            energy_norm: sums.energy_sq.sqrt(),
+            parts: BoundParts {
+                flux: sums.flux_sq.sqrt(),
+                oscillation: sums.oscillation_sq.sqrt(),
+                contact: (2.0 * sums.contact).sqrt(),
+                boundary: sums.boundary_sq.sqrt(),
+                algebraic: rest[0].hypot(rest[1]) + (2.0 * sums.overlap).sqrt() + sums.mended_sq.sqrt(),
+            },
+            indicators,
+        }
+    }
+
+    /// A guaranteed bound of the error relative to the energy norm of the exact solution, which is
+    /// `|||u_h|||` less the bound at least; `None` when the bound is not smaller than that.
+    pub fn relative(&self) -> Option<f64> {
+        let least = self.energy_norm - self.total;
+        (least > 0.0).then(|| self.total / least)
+    }
+
+    /// The bound over the true energy error.
+    pub fn effectivity(&self, error: f64) -> f64 {
+        self.total / error
+    }
+}
+
+/// The action of the bound, and what it leaves of the actions that the two membranes see.
+struct Push {
+    /// `lt`: the recovered action where the membranes touch, cut off at zero; over vertices.
+    lambda: Vec<f64>,
+    /// `||rho_i||^2`, where `rho_i` is on `D_a` the action that membrane `i` sees, less `lt`.
+    rest_sq: [f64; 2],
+}
+
+impl Push {
+    fn new(d: &Discretization, displacement: &[Vec<f64>; 2], around: &VertexTriangles) -> Self {
+        let action = Action::recover(d, displacement);
+        let gap = |a: usize| displacement[0][a] - displacement[1][a];
+        let scales = d.scales();
+        let mut lambda = vec![0.0; d.mesh().points().len()];
+        let mut rest_sq = [0.0; 2];
+        for (k, &a) in d.interior().iter().enumerate() {
+            // Where there is a gap, an action would cost its product with the gap.
+            if gap(a) / scales.displacement < action.lambda[k] / scales.force_density {
+                lambda[a] = action.lambda[k].max(0.0);
+            }
+            (0..2).for_each(|i| {
+                rest_sq[i] += d.dual_area()[a] * (action.from_membrane[i][k] - lambda[a]).powi(2);
+            });
+        }
+        push_at_boundary(d, gap, around, &mut lambda);
+        Self { lambda, rest_sq }
+    }
+}
+
+/// On the dual cells of the boundary `lambda_h` is zero (4.4), the exact action need not be. Where the membranes touch in
+/// all triangles around a boundary vertex, `lt` is there the mean of the action at the neighbours.
+fn push_at_boundary(
+    d: &Discretization,
+    gap: impl Fn(usize) -> f64,
+    around: &VertexTriangles,
+    lambda: &mut [f64],
+) {
+    let kind = d.mesh().kind();
+    for a in (0..lambda.len()).filter(|&a| kind[a] == VertexKind::Boundary) {
+        let corners = || around.of(a).iter().flat_map(|&t| d.mesh().triangles()[t]);
+        if corners().any(|b| gap(b) > 0.0) {
+            continue;
+        }
+        let inside = || corners().filter(|&b| kind[b] == VertexKind::Interior);
+        let count = inside().count();
+        if count > 0 {
+            lambda[a] = inside().map(|b| lambda[b]).sum::<f64>() / count as f64;
+        }
+    }
+}
+
+/// `C_F` with `||v|| <= C_F |v|_{H1}` for functions that vanish on the boundary.
+fn friedrichs(d: &Discretization, domain: Option<&Domain>) -> f64 {
+    let (lower, upper) = d.mesh().bounding_box();
+    let sides = match domain {
+        Some(Domain::Disk { radius, .. }) => [2.0 * radius; 2],
+        _ => [upper[0] - lower[0], upper[1] - lower[1]],
+    };
+    1.0 / (PI * (1.0 / sides[0]).hypot(1.0 / sides[1]))
+}
+
+#[cfg(test)]
+mod tests;

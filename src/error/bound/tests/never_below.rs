@@ -1,0 +1,179 @@
+//! The bound is never below the true error.
+
+use super::{ErrorBound, bound, energy_error};
+use crate::discretization::Discretization;
+use crate::error::tests::{exact, mesh, problem, solve};
+use crate::mesh::samples::{Random, irregular};
+use crate::mesh::{Mesh, disk, polygon};
+use crate::problem::{Case, ContactProblem, Domain, ExactSolution, Function};
+use crate::qp::Clarabel;
+use crate::solver::{ActiveSet, ContactSolver, Multigrid, QpSolver, SolverOptions};
+
+/// Far from the asymptotic range the bound may be this many times the error.
+const COARSE: f64 = 3.0;
+
+/// Rounding of a bound and an error that are zero.
+const ROUNDING: f64 = 1e-10;
+
+fn assert_bounds(name: &str, exact: &ExactSolution, mesh: &Mesh) {
+    let problem = problem(exact);
+    let d = Discretization::new(&problem, mesh).unwrap();
+    let solution = solve(&d);
+    let bound = bound(&problem, &exact.domain(), &d, solution.displacement());
+    let error = energy_error(&d, solution.displacement(), exact);
+    assert!(bound.total >= error, "{name}: {} is below {error}", bound.total);
+    // The twin: a third of it is no bound.
+    assert!(bound.total <= COARSE * error + ROUNDING, "{name}: {} is far above {error}", bound.total);
+}
+
+#[test]
+fn on_the_exact_cases() {
+    for case in Case::ALL {
+        for (mu1, mu2) in [(1.0, 1.0), (1.0, 20.0), (20.0, 1.0)] {
+            let exact = exact(case, &[("mu1", mu1), ("mu2", mu2)]);
+            for cells in [6, 20] {
+                assert_bounds(
+                    &format!("{case}, {mu1}, {mu2}, {cells}"),
+                    &exact,
+                    &mesh(&exact.domain(), cells),
+                );
+            }
+            if exact.domain() == Domain::unit_square() {
+                assert_bounds(&format!("{case}, irregular"), &exact, &irregular(15));
+            }
+        }
+    }
+}
+
+/// The membranes of a disk with a height that varies: `u1 = 2 + x^2 - y^2` is harmonic, `u2 = 0`.
+#[test]
+fn on_a_disk_whose_height_varies() {
+    let domain = Domain::Disk { centre: [0.0, 0.0], radius: 1.0 };
+    let height = Function::from_fn(|x, y| 2.0 + x * x - y * y);
+    let problem = ContactProblem::builder().tension(2.0, 1.0).height(height).build().unwrap();
+    for rings in [4, 8, 16] {
+        let mesh = disk([0.0, 0.0], 1.0, rings).unwrap();
+        let d = Discretization::new(&problem, &mesh).unwrap();
+        let displacement = solve(&d).displacement().clone();
+        let found = bound(&problem, &domain, &d, &displacement);
+        let error = (2.0 * seminorm_of_difference_sq(&d, &displacement[0])).sqrt();
+        assert!(found.total >= error && found.total <= 2.0 * error, "{rings}: {found:?} {error}");
+        // The twin: of the polygon alone, whose trace is another, no more than the flux is known.
+        assert!(found.parts.boundary > 0.1 * found.parts.flux, "{:?}", found.parts);
+    }
+}
+
+/// `|x^2 - y^2 - u_h|_{H1}^2` over the mesh: the gradient `(2 x, -2 y)` less a constant, by the midpoints of the edges.
+fn seminorm_of_difference_sq(d: &Discretization, u: &[f64]) -> f64 {
+    let mesh = d.mesh();
+    let on_triangle = |k: usize| {
+        let corners = mesh.corners(k);
+        let slope = crate::fem::gradient(corners, mesh.triangles()[k].map(|a| u[a]));
+        let at_midpoint = |j: usize| {
+            let [x, y] = [0, 1].map(|axis| 0.5 * (corners[j][axis] + corners[(j + 1) % 3][axis]));
+            (2.0 * x - slope[0]).powi(2) + (-2.0 * y - slope[1]).powi(2)
+        };
+        mesh.triangle_area(k) / 3.0 * (0..3).map(at_midpoint).sum::<f64>()
+    };
+    (0..mesh.triangles().len()).map(on_triangle).sum()
+}
+
+/// A polygon around the origin whose vertices lie at random distances.
+fn random_polygon(random: &mut Random) -> Vec<[f64; 2]> {
+    let corners = 3 + random.below(6);
+    let at = |k: usize| std::f64::consts::TAU * k as f64 / corners as f64;
+    (0..corners)
+        .map(|k| (at(k), random.between(0.4, 1.0)))
+        .map(|(angle, radius)| [radius * angle.cos(), radius * angle.sin()])
+        .collect()
+}
+
+fn random_problem(random: &mut Random) -> ContactProblem {
+    let [a, b, c, e] = [0; 4].map(|_| random.between(-20.0, 20.0));
+    let [height, slope] = [random.between(0.0, 0.1), random.between(0.0, 0.02)];
+    ContactProblem::builder()
+        .tension(random.between(0.5, 5.0), random.between(0.5, 5.0))
+        .load(
+            Function::from_fn(move |x, y| a - 10.0 + b * x * y),
+            Function::from_fn(move |x, y| c + e * (4.0 * x + y).sin()),
+        )
+        // Affine: then traces on finer meshes are the same.
+        .height(Function::from_fn(move |x, y| height + slope * (2.0 + x - y)))
+        .build()
+        .unwrap()
+}
+
+#[test]
+fn on_random_polygons_against_a_finer_solution() {
+    for seed in 0..30 {
+        let mut random = Random::new(seed);
+        let coarse = polygon(&random_polygon(&mut random), &[], 0.25, 20.0).unwrap();
+        let problem = random_problem(&mut random);
+        let d = Discretization::new(&problem, &coarse).unwrap();
+        let solution = solve(&d);
+        let found = ErrorBound::new(&problem, None, &d, solution.displacement()).unwrap().total;
+        let first = coarse.refine();
+        let second = first.mesh.refine();
+        let mut difference = solution.displacement().clone();
+        for parents in [&first.parents, &second.parents] {
+            for u in &mut difference {
+                let midpoints: Vec<f64> = parents.iter().map(|&[a, b]| 0.5 * (u[a] + u[b])).collect();
+                u.extend(midpoints);
+            }
+        }
+        let d_fine = Discretization::new(&problem, &second.mesh).unwrap();
+        let finer = solve(&d_fine);
+        for (u, finer) in difference.iter_mut().zip(finer.displacement()) {
+            u.iter_mut().zip(finer).for_each(|(u, finer)| *u -= finer);
+        }
+        let energy_sq = |i: usize| {
+            let u = &difference[i];
+            let at = |a: usize| u[a] * d_fine.stiffness_row(a, |b| u[b]);
+            problem.tension()[i] * (0..u.len()).map(at).sum::<f64>()
+        };
+        let distance = (energy_sq(0) + energy_sq(1)).sqrt();
+        assert!(found >= distance, "seed {seed}: {found} is below {distance}");
+        assert!(found <= COARSE * distance, "seed {seed}: {found} is far above {distance}");
+    }
+}
+
+/// Displacements of every solver, loose, stopped early, or moved at random: nothing that has the right boundary values is too
+/// bad to be bounded.
+#[test]
+fn of_displacements_that_do_not_solve_the_problem() {
+    let exact = exact(Case::Circle, &[("mu1", 1.0), ("mu2", 3.0)]);
+    let problem = problem(&exact);
+    let mesh = mesh(&exact.domain(), 24);
+    let d = Discretization::new(&problem, &mesh).unwrap();
+    let loose = SolverOptions { tolerance: 1e-2, polish: false, ..SolverOptions::default() };
+    let early = SolverOptions { max_iterations: Some(1), ..SolverOptions::default() };
+    let solvers = || -> Vec<Box<dyn ContactSolver>> {
+        vec![Box::new(ActiveSet), Box::new(Multigrid), Box::new(QpSolver::new(Clarabel))]
+    };
+    let mut of_solvers = Vec::new();
+    for options in [&loose, &early] {
+        for mut solver in solvers() {
+            of_solvers.push((solver.name().to_owned(), solver.solve(&d, options).unwrap().displacement));
+        }
+    }
+    let solved = solve(&d).displacement().clone();
+    let mut random = Random::new(7);
+    for size in [1e-4, 1e-2, 1.0] {
+        let mut moved = solved.clone();
+        for u in &mut moved {
+            d.interior().iter().for_each(|&a| u[a] += random.between(-size, size));
+        }
+        of_solvers.push((format!("moved by {size}"), moved));
+    }
+    let still = [d.height().to_vec(), vec![0.0; d.height().len()]];
+    of_solvers.push(("at rest".into(), still));
+    let mut algebraic = 0;
+    for (name, displacement) in of_solvers {
+        let found = bound(&problem, &exact.domain(), &d, &displacement);
+        let error = energy_error(&d, &displacement, &exact);
+        assert!(found.total >= error, "{name}: {} is below {error}", found.total);
+        // The twin: what the discretisation alone explains is below the error of some of them.
+        algebraic += usize::from(found.parts.discretization() < error);
+    }
+    assert!(algebraic > 0);
+}

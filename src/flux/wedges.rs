@@ -1,0 +1,256 @@
+//! The full reconstruction wedge by wedge: what guaranteed bounds need of it, without `S_h`.
+//!
+//! On a wedge `D_a cap K` the difference of `t_ih` and `-mu_i grad u_ih` has no flux through the boundary of `D_a`, so it is
+//! known from what enters through the first half edge and from the source in the wedge; its square is a quadratic form of
+//! the two.
+
+use rayon::prelude::*;
+
+use super::field::through;
+use super::reconstruct::flux_on;
+use crate::discretization::Discretization;
+use crate::fem::ElementMoments;
+use crate::mesh::{Mesh, VertexTriangles};
+
+/// Vertices that are worked on together.
+const BLOCK: usize = 1024;
+
+/// Both fluxes `t_ih` of [`Reconstruction::Full`](super::Reconstruction::Full), by their difference to `-mu_i grad u_ih` on
+/// the wedges. Linear time, in parallel; the result does not depend on the number of threads.
+pub(crate) struct WedgeFluxes<'a> {
+    data: Data<'a>,
+    /// In the order of the triangles around the vertices.
+    changes: Vec<[Change; 2]>,
+}
+
+/// What they are made from.
+struct Data<'a> {
+    mesh: &'a Mesh,
+    around: &'a VertexTriangles,
+    tension: [f64; 2],
+    displacement: &'a [Vec<f64>; 2],
+    load: [&'a [ElementMoments]; 2],
+    lambda: &'a [f64],
+}
+
+/// `t_ih + mu_i grad u_ih` on a wedge, as fluxes: what enters through the half edge that comes first counterclockwise
+/// around the vertex, and the source. What enters and what the source adds leaves through the other half edge.
+#[derive(Debug, Clone, Copy, Default)]
+struct Change {
+    entering: f64,
+    source: f64,
+}
+
+/// The products over a wedge of two fields: `c` circulates with the flux 1, `s` has the source 1, spread evenly, and
+/// nothing enters it.
+#[derive(Debug, Clone, Copy, Default)]
+struct Products {
+    cc: f64,
+    cs: f64,
+    ss: f64,
+}
+
+impl Products {
+    /// Over `D_a cap K`, `K` with the corners `a, b, c` counterclockwise.
+    fn new([a, b, c]: [[f64; 2]; 3], area: f64) -> Self {
+        let (p, q) = ([b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]);
+        let dot = |u: [f64; 2], v: [f64; 2]| u[0] * v[0] + u[1] * v[1];
+        let (pp, pq, qq) = (dot(p, p), dot(p, q), dot(q, q));
+        Self {
+            cc: (5.0 * pp - 8.0 * pq + 5.0 * qq) / (24.0 * area),
+            cs: (4.0 * pp - 4.0 * pq + qq) / (24.0 * area),
+            ss: (9.0 * pp - 4.0 * pq + qq) / (64.0 * area),
+        }
+    }
+
+    /// `int |entering c + source s|^2`.
+    fn square(self, Change { entering, source }: Change) -> f64 {
+        entering * entering * self.cc + source * (2.0 * entering * self.cs + source * self.ss)
+    }
+}
+
+/// A wedge while its fan is worked on.
+#[derive(Debug, Clone, Copy)]
+struct Wedge {
+    /// The corner of the triangle after the vertex, and the one before.
+    next: usize,
+    last: usize,
+    /// Its place in the row of the vertex.
+    place: usize,
+    area: f64,
+    load: [f64; 2],
+    flux: [[f64; 2]; 2],
+    /// From the midpoint of the second half edge to the vertex.
+    spoke: [[f64; 2]; 2],
+    products: Products,
+}
+
+impl<'a> WedgeFluxes<'a> {
+    /// For the displacements `[u1, u2]` over vertices; `load` are the moments of both loads, `around` the triangles around the
+    /// vertices of the mesh of `d`. Around an interior vertex the action follows from the balance; on the dual cell of a boundary vertex
+    /// it may be chosen, and is that of `lambda`, over vertices.
+    pub(crate) fn new(
+        d: &'a Discretization,
+        around: &'a VertexTriangles,
+        displacement: &'a [Vec<f64>; 2],
+        load: [&'a [ElementMoments]; 2],
+        lambda: &'a [f64],
+    ) -> Self {
+        let data = Data { mesh: d.mesh(), around, tension: d.tension(), displacement, load, lambda };
+        let vertices = d.mesh().points().len();
+        let mut changes = vec![[Change::default(); 2]; 3 * d.mesh().triangles().len()];
+        let mut rest = changes.as_mut_slice();
+        let mut blocks = Vec::with_capacity(vertices.div_ceil(BLOCK));
+        for first in (0..vertices).step_by(BLOCK) {
+            let end = (first + BLOCK).min(vertices);
+            let (rows, others) = rest.split_at_mut(around.row(end - 1).end - around.row(first).start);
+            blocks.push((first..end, rows));
+            rest = others;
+        }
+        blocks.into_par_iter().for_each(|(vertices, mut rows)| {
+            let mut patch = Patch::default();
+            for a in vertices {
+                let (row, others) = rows.split_at_mut(around.row(a).len());
+                data.of_vertex(a, &mut patch, row);
+                rows = others;
+            }
+        });
+        Self { data, changes }
+    }
+
+    /// `int_K |t_ih + mu_i grad u_ih|^2` for both membranes.
+    pub(crate) fn distance_sq(&self, k: usize) -> [f64; 2] {
+        let (corners, area) = (self.data.mesh.corners(k), self.data.mesh.triangle_area(k));
+        let mut sum = [0.0; 2];
+        for corner in 0..3 {
+            let products = Products::new([0, 1, 2].map(|j| corners[(corner + j) % 3]), area);
+            let change = self.change(k, corner);
+            (0..2).for_each(|i| sum[i] += products.square(change[i]));
+        }
+        sum
+    }
+
+    /// The outward fluxes of `t_ih` through the halves of the edge of triangle `k` from corner `corner` to the next, which lies
+    /// on the boundary: the half at this corner, then that at the next. Unit: force.
+    pub(crate) fn boundary_outward(&self, membrane: usize, k: usize, corner: usize) -> [f64; 2] {
+        let corners = self.data.mesh.corners(k);
+        let q = self.data.discrete_flux(k)[membrane];
+        let half = 0.5 * through(q, corners[corner], corners[(corner + 1) % 3]);
+        let (first, last) = (self.change(k, corner)[membrane], self.change(k, (corner + 1) % 3)[membrane]);
+        [half - first.entering, half + last.entering + last.source]
+    }
+
+    fn change(&self, k: usize, corner: usize) -> [Change; 2] {
+        let a = self.data.mesh.triangles()[k][corner];
+        let place = self.data.around.of(a).binary_search(&k).expect("a triangle is around its corners");
+        self.changes[self.data.around.row(a).start + place]
+    }
+}
+
+impl Data<'_> {
+    /// The changes around one vertex, written to its row.
+    fn of_vertex(&self, a: usize, patch: &mut Patch, row: &mut [[Change; 2]]) {
+        patch.wedges.clear();
+        let triangles = self.around.of(a).iter().enumerate();
+        patch.wedges.extend(triangles.map(|(place, &k)| self.wedge(a, k, place)));
+        patch.fans(|fan, closed| {
+            for (membrane, sign) in [1.0, -1.0].into_iter().enumerate() {
+                let action = (!closed).then_some(sign * self.lambda[a]);
+                equilibrate(fan, action, membrane, row);
+            }
+        });
+    }
+
+    fn wedge(&self, a: usize, k: usize, place: usize) -> Wedge {
+        let triangle = self.mesh.triangles()[k];
+        let corner = triangle.iter().position(|&b| b == a).expect("a is a corner of the triangles around it");
+        let [next, last] = [1, 2].map(|j| triangle[(corner + j) % 3]);
+        let [p, q, r] = [a, next, last].map(|b| self.mesh.points()[b]);
+        let area = self.mesh.triangle_area(k);
+        Wedge {
+            next,
+            last,
+            place,
+            area: area / 3.0,
+            load: self.load.map(|load| load[k].integrals[corner]),
+            flux: self.discrete_flux(k),
+            spoke: [[0.5 * (p[0] + r[0]), 0.5 * (p[1] + r[1])], p],
+            products: Products::new([p, q, r], area),
+        }
+    }
+
+    /// `-mu_i grad u_ih` on triangle `k`.
+    fn discrete_flux(&self, k: usize) -> [[f64; 2]; 2] {
+        [0, 1].map(|i| flux_on(self.mesh, k, self.tension[i], &self.displacement[i]))
+    }
+}
+
+/// Memory for the wedges around a vertex.
+#[derive(Default)]
+struct Patch {
+    /// In the order of `next`, by which successors are found.
+    wedges: Vec<Wedge>,
+    is_first: Vec<bool>,
+    seen: Vec<bool>,
+    /// One fan, counterclockwise.
+    fan: Vec<Wedge>,
+}
+
+impl Patch {
+    /// Calls `each(fan, closed)` for the fans of a vertex: one that closes around an interior vertex, one for each sector of
+    /// the domain at a boundary vertex.
+    fn fans(&mut self, mut each: impl FnMut(&[Wedge], bool)) {
+        let Self { wedges, is_first, seen, fan } = self;
+        // Small rows are sorted by insertion.
+        wedges.sort_unstable_by_key(|wedge| wedge.next);
+        let following = |k: usize| wedges.binary_search_by_key(&wedges[k].last, |wedge| wedge.next).ok();
+        is_first.clear();
+        is_first.resize(wedges.len(), true);
+        seen.clear();
+        seen.resize(wedges.len(), false);
+        (0..wedges.len()).filter_map(following).for_each(|k| is_first[k] = false);
+        // What is not seen from a first wedge lies in a fan without one.
+        for closed in [false, true] {
+            for start in 0..wedges.len() {
+                if seen[start] || !(closed || is_first[start]) {
+                    continue;
+                }
+                fan.clear();
+                let mut wedge = Some(start);
+                while let Some(k) = wedge.filter(|&k| !seen[k]) {
+                    seen[k] = true;
+                    fan.push(wedges[k]);
+                    wedge = following(k);
+                }
+                each(fan, closed);
+            }
+        }
+    }
+}
+
+/// Balances each wedge of a fan, and chooses the circulation next to `-mu_i grad u_ih`. The action `-(-1)^i lambda_a` is given
+/// where the fan is open; around an interior vertex, the last wedge must lead back to the first.
+fn equilibrate(fan: &[Wedge], action: Option<f64>, membrane: usize, row: &mut [[Change; 2]]) {
+    let jump = |k: usize| {
+        let after = if k + 1 < fan.len() { k + 1 } else { 0 };
+        if after == 0 && action.is_some() {
+            return 0.0;
+        }
+        let (here, there) = (fan[k].flux[membrane], fan[after].flux[membrane]);
+        let [midpoint, a] = fan[k].spoke;
+        through([here[0] - there[0], here[1] - there[1]], midpoint, a)
+    };
+    let sum = |of_wedge: &dyn Fn(usize) -> f64| (0..fan.len()).map(of_wedge).sum::<f64>();
+    let action = action.unwrap_or_else(|| -sum(&|k| fan[k].load[membrane] + jump(k)) / sum(&|k| fan[k].area));
+    let mut entering = 0.0;
+    let (mut with_circulation, mut circulation_sq) = (0.0, 0.0);
+    for (k, wedge) in fan.iter().enumerate() {
+        let source = wedge.load[membrane] + action * wedge.area;
+        row[wedge.place][membrane] = Change { entering, source };
+        with_circulation += entering * wedge.products.cc + source * wedge.products.cs;
+        circulation_sq += wedge.products.cc;
+        entering += source + jump(k);
+    }
+    let alpha = -with_circulation / circulation_sq;
+    fan.iter().for_each(|wedge| row[wedge.place][membrane].entering += alpha);
+}
