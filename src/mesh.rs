@@ -2,8 +2,11 @@
 
 mod adjacency;
 mod ancestry;
+mod bisect;
 mod check;
+mod circle;
 mod dual;
+mod edges;
 mod family;
 mod generate;
 pub mod gmsh;
@@ -20,6 +23,7 @@ mod structured;
 use std::sync::Arc;
 
 pub use ancestry::Parents;
+pub use bisect::Bisection;
 pub use check::MeshError;
 pub use dual::{DualMesh, SubTriangulation};
 pub use family::MeshFamily;

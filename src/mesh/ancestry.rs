@@ -71,25 +71,11 @@ impl Mesh {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::mesh::samples::irregular;
+    use crate::mesh::samples::{ancestry_defect, irregular};
     use crate::mesh::{Pattern, disk, l_shape, rectangle};
 
     /// Coordinates of size one are rounded a few times.
     const ROUNDING: f64 = 1e-14;
-
-    /// How far the vertices are from the means of their parents, where the coarsest vertices lie as in `coarsest`.
-    fn defect(mesh: &Mesh, coarsest: &[[f64; 2]]) -> f64 {
-        let prolong = |points: &[[f64; 2]], parents: &Parents| -> Vec<[f64; 2]> {
-            let at = |end: u32| points[end as usize];
-            let mean = |&[a, b]: &[u32; 2]| [0, 1].map(|axis| 0.5 * (at(a)[axis] + at(b)[axis]));
-            parents.ends().iter().map(mean).collect()
-        };
-        let points =
-            mesh.ancestry().iter().fold(coarsest.to_vec(), |points, parents| prolong(&points, parents));
-        let distance = |(p, q): (&[f64; 2], &[f64; 2])| (p[0] - q[0]).abs().max((p[1] - q[1]).abs());
-        points.iter().zip(mesh.points()).map(distance).fold(0.0, f64::max)
-    }
 
     #[test]
     fn structured_meshes_are_refinements_of_coarser_ones() {
@@ -97,13 +83,16 @@ mod tests {
             let square = |cells| rectangle([0.0, 1.0], [2.0, 4.0], cells, pattern).unwrap();
             let mesh = square([24, 40]);
             assert_eq!(mesh.ancestry().len(), 3, "24, 12, 6, 3 cells");
-            assert!(defect(&mesh, square([3, 5]).points()) < ROUNDING);
-            assert!(defect(&mesh, square([5, 3]).points()) > 0.1, "another coarsest mesh is noticed");
+            assert!(ancestry_defect(&mesh, square([3, 5]).points()) < ROUNDING);
+            assert!(
+                ancestry_defect(&mesh, square([5, 3]).points()) > 0.1,
+                "another coarsest mesh is noticed"
+            );
             assert!(square([7, 8]).ancestry().is_empty(), "an odd number of cells");
 
             let mesh = l_shape(1.0, 12, pattern).unwrap();
             assert_eq!(mesh.ancestry().len(), 2, "12, 6, 3 cells");
-            assert!(defect(&mesh, l_shape(1.0, 3, pattern).unwrap().points()) < ROUNDING);
+            assert!(ancestry_defect(&mesh, l_shape(1.0, 3, pattern).unwrap().points()) < ROUNDING);
         }
     }
 
@@ -132,7 +121,7 @@ mod tests {
         expected.sort_unstable();
         found.sort_unstable();
         assert_eq!(found, expected);
-        assert!(defect(&fine, coarse.points()) < 0.1, "and they lie near by");
+        assert!(ancestry_defect(&fine, coarse.points()) < 0.1, "and they lie near by");
     }
 
     #[test]
@@ -140,6 +129,6 @@ mod tests {
         let coarse = irregular(3);
         let fine = coarse.refine().mesh.refine().mesh;
         assert_eq!(fine.ancestry().len(), 2);
-        assert!(defect(&fine, coarse.points()) < ROUNDING);
+        assert!(ancestry_defect(&fine, coarse.points()) < ROUNDING);
     }
 }

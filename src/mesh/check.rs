@@ -11,6 +11,7 @@ use thiserror::Error;
 use super::adjacency::{HalfEdge, HalfEdges};
 use super::quality::angles;
 use super::{Mesh, VertexKind, distance_sq, twice_signed_area};
+pub(super) use boundary::resolution;
 use boundary::{Boundary, BoundaryEdge};
 use pieces::check_pieces;
 
@@ -131,6 +132,16 @@ pub enum MeshError {
         /// A triangle at the second.
         triangle: usize,
     },
+    /// A triangle cannot be bisected any more.
+    #[error(
+        "triangle {triangle} (vertices {}, {}, {}) cannot be bisected: the size of the mesh or of its coordinates leaves too few digits for its parts; bisect less often there", corners[0], corners[1], corners[2]
+    )]
+    TooSmall {
+        /// The triangle.
+        triangle: usize,
+        /// Its corners.
+        corners: [usize; 3],
+    },
     /// A mesh cannot be graded like this.
     #[error(
         "the mesh cannot be graded with the exponent {exponent}: give a number >= 1, and a domain that is a square around the point or has it as its corner"
@@ -149,6 +160,7 @@ impl MeshError {
             | Self::Degenerate { triangle, .. }
             | Self::OverlapAtVertex { triangle, .. }
             | Self::HangingVertex { triangle, .. }
+            | Self::TooSmall { triangle, .. }
             | Self::CoincidentVertices { triangle, .. } => Some(triangle),
             Self::Duplicate { first, .. } | Self::Overlap { first, .. } | Self::Crossing { first, .. } => {
                 Some(first)
@@ -206,18 +218,35 @@ fn orient(points: &[[f64; 2]], triangles: &mut [[usize; 3]]) -> Result<(), MeshE
         if let Some(&vertex) = corners.iter().find(|&&a| a >= points.len()) {
             return Err(MeshError::NoSuchVertex { triangle, vertex, vertices: points.len() });
         }
-        let [a, b, c] = corners.map(|a| points[a]);
-        let longest_sq = distance_sq(a, b).max(distance_sq(b, c)).max(distance_sq(c, a));
-        let area = twice_signed_area([a, b, c]);
-        let tiny = !(longest_sq * MAX_COORDINATE * MAX_COORDINATE > 1.0);
-        if tiny || !(area.abs() > MIN_RELATIVE_AREA * longest_sq) {
-            return Err(MeshError::Degenerate { triangle, corners: *corners });
-        }
-        if area < 0.0 {
-            corners.swap(1, 2);
+        match sense(corners.map(|a| points[a])) {
+            Sense::Counterclockwise => {}
+            Sense::Clockwise => corners.swap(1, 2),
+            Sense::Degenerate => return Err(MeshError::Degenerate { triangle, corners: *corners }),
         }
     }
     Ok(())
+}
+
+/// How the corners of a triangle run around it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Sense {
+    Counterclockwise,
+    Clockwise,
+    /// It has no area that rounding leaves.
+    Degenerate,
+}
+
+pub(super) fn sense([a, b, c]: [[f64; 2]; 3]) -> Sense {
+    let longest_sq = distance_sq(a, b).max(distance_sq(b, c)).max(distance_sq(c, a));
+    let area = twice_signed_area([a, b, c]);
+    let tiny = !(longest_sq * MAX_COORDINATE * MAX_COORDINATE > 1.0);
+    if tiny || !(area.abs() > MIN_RELATIVE_AREA * longest_sq) {
+        Sense::Degenerate
+    } else if area > 0.0 {
+        Sense::Counterclockwise
+    } else {
+        Sense::Clockwise
+    }
 }
 
 /// The edges with one triangle; those with two must have one on each side.

@@ -1,6 +1,7 @@
 //! A coarse mesh and the finer ones that follow its domain.
 
-use super::{Mesh, MeshError, Refinement, VertexKind};
+use super::circle::Circle;
+use super::{Mesh, MeshError, Refinement};
 use crate::problem::Domain;
 
 /// A mesh that can be refined again and again, the finer ones following a curved boundary or a grading.
@@ -16,7 +17,7 @@ enum Shape {
     /// The polygon that the coarse mesh covers.
     Polygon,
     /// A circle.
-    Disk { centre: [f64; 2], radius: f64 },
+    Disk(Circle),
     /// A grading towards a point, laid over a mesh that is refined uniformly: see [`Mesh::graded`].
     Graded { uniform: Mesh, point: [f64; 2], exponent: f64 },
 }
@@ -29,10 +30,8 @@ impl MeshFamily {
 
     /// Refinements of a mesh of `domain`: those of a disk follow its circle.
     pub fn of_domain(mesh: Mesh, domain: &Domain) -> Self {
-        match *domain {
-            Domain::Disk { centre, radius } => Self { mesh, shape: Shape::Disk { centre, radius } },
-            _ => Self::polygonal(mesh),
-        }
+        let shape = Circle::of_domain(domain).map_or(Shape::Polygon, Shape::Disk);
+        Self { mesh, shape }
     }
 
     /// Refinements graded towards `point`, as the coarse mesh: see [`Mesh::graded`].
@@ -59,9 +58,10 @@ impl MeshFamily {
                 let Refinement { mesh, parents } = self.mesh.refine();
                 (parents, mesh)
             }
-            Shape::Disk { centre, radius } => {
-                let Refinement { mesh, parents } = self.mesh.refine();
-                (parents, boundary_moved_to_circle(&mesh, *centre, *radius)?)
+            Shape::Disk(circle) => {
+                let Refinement { mut mesh, parents } = self.mesh.refine();
+                circle.attract(&mut mesh.points, &mesh.kind);
+                (parents, mesh.checked()?)
             }
             Shape::Graded { uniform, point, exponent } => {
                 let Refinement { mesh, parents } = uniform.refine();
@@ -73,16 +73,6 @@ impl MeshFamily {
         self.mesh = mesh;
         Ok(parents)
     }
-}
-
-fn boundary_moved_to_circle(mesh: &Mesh, centre: [f64; 2], radius: f64) -> Result<Mesh, MeshError> {
-    let moved = |(point, kind): (&[f64; 2], &VertexKind)| {
-        let [x, y] = [point[0] - centre[0], point[1] - centre[1]];
-        let scale = if *kind == VertexKind::Boundary { radius / x.hypot(y) } else { 1.0 };
-        [centre[0] + scale * x, centre[1] + scale * y]
-    };
-    let points = mesh.points.iter().zip(&mesh.kind).map(moved).collect();
-    Ok(Mesh::new(points, mesh.triangles.clone())?.with_ancestry(mesh.ancestry.clone()))
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! The midpoints of the edges.
 
 use super::Mesh;
-use super::adjacency::HalfEdges;
+use super::edges::Edges;
 
 /// The midpoints of all edges, numbered after the vertices of the mesh.
 pub(super) struct Midpoints {
@@ -17,21 +17,21 @@ pub(super) struct Midpoints {
 
 impl Midpoints {
     pub(super) fn new(mesh: &Mesh) -> Self {
-        let vertices = mesh.points.len();
-        let (mut points, mut ends, mut on_boundary) = (Vec::new(), Vec::new(), Vec::new());
-        let mut of_triangle = vec![[0; 3]; mesh.triangles.len()];
-        for (lower, upper, sides) in HalfEdges::new(vertices, &mesh.triangles).edges() {
-            for side in sides {
-                let from = if side.reversed { upper } else { lower };
-                let corner = mesh.triangles[side.triangle].iter().position(|&a| a == from);
-                let corner = corner.expect("a half edge starts at a corner of its triangle");
-                of_triangle[side.triangle][corner] = vertices + points.len();
-            }
-            let [p, q] = [mesh.points[lower], mesh.points[upper]];
-            points.push([0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])]);
-            ends.push([lower, upper]);
-            on_boundary.push(sides.len() == 1);
+        let edges = Edges::new(mesh);
+        let number = |edge: usize| mesh.points.len() + edge;
+        Self {
+            points: edges.ends.iter().map(|&ends| mesh.midpoint(ends)).collect(),
+            on_boundary: (0..edges.ends.len()).map(|edge| edges.on_boundary(edge)).collect(),
+            of_triangle: edges.of_triangle.iter().map(|edges| edges.map(number)).collect(),
+            ends: edges.ends,
         }
-        Self { points, ends, on_boundary, of_triangle }
+    }
+}
+
+impl Mesh {
+    /// The midpoint of an edge.
+    pub(super) fn midpoint(&self, ends: [usize; 2]) -> [f64; 2] {
+        let [p, q] = ends.map(|a| self.points[a]);
+        [0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])]
     }
 }

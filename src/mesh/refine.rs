@@ -41,7 +41,7 @@ mod tests {
 
     use super::*;
     use crate::mesh::adjacency::HalfEdges;
-    use crate::mesh::samples::{irregular, renumbered, square, square_without};
+    use crate::mesh::samples::{assorted, irregular, renumbered, square};
 
     /// Rounding of sums over the triangles of small meshes of size one.
     const ROUNDING: f64 = 1e-12;
@@ -50,22 +50,9 @@ mod tests {
         mesh.kind().iter().filter(|&&k| k == kind).count()
     }
 
-    /// A square with a hole, two holes that touch, components that touch, triangles of all shapes, an unused vertex.
-    fn samples() -> Vec<Mesh> {
-        let with_unused = [irregular(3).points(), &[[0.5, 0.5]]].concat();
-        vec![
-            square(3),
-            irregular(4),
-            square_without(3, |i, j| (i, j) == (1, 1)),
-            square_without(4, |i, j| i == j && (i == 1 || i == 2)),
-            square_without(4, |i, j| (i + j) % 2 == 0),
-            Mesh::new(with_unused, irregular(3).triangles().to_vec()).unwrap(),
-        ]
-    }
-
     #[test]
     fn triangles_vertices_and_boundary_are_counted_by_eulers_formula() {
-        for coarse in samples() {
+        for coarse in assorted() {
             let Refinement { mesh: fine, parents } = coarse.refine();
             let (vertices, triangles) = (coarse.points().len(), coarse.triangles().len());
             // Each vertex of the boundary starts as many edges of it as there are sectors of the domain at it.
@@ -82,7 +69,7 @@ mod tests {
 
     #[test]
     fn the_result_is_a_mesh_with_the_same_area_and_angles() {
-        for coarse in samples() {
+        for coarse in assorted() {
             let fine = coarse.refine().mesh;
             let checked = Mesh::new(fine.points().to_vec(), fine.triangles().to_vec()).unwrap();
             assert_eq!(checked.triangles(), fine.triangles(), "counterclockwise");
@@ -99,7 +86,7 @@ mod tests {
 
     #[test]
     fn old_vertices_stay_and_new_ones_are_the_midpoints_of_their_parents() {
-        for coarse in samples() {
+        for coarse in assorted() {
             let Refinement { mesh: fine, parents } = coarse.refine();
             let (old, new) = fine.points().split_at(coarse.points().len());
             assert_eq!(old, coarse.points());

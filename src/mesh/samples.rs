@@ -1,6 +1,6 @@
 //! Sample meshes for the tests of all layers.
 
-use super::{Mesh, Pattern, VertexKind, rectangle};
+use super::{Mesh, Parents, Pattern, VertexKind, rectangle};
 
 /// Pseudorandom numbers (xorshift64*, Vigna 2016) that are the same in every run.
 pub(crate) struct Random(u64);
@@ -79,4 +79,29 @@ pub(crate) fn renumbered(mesh: &Mesh, seed: u64) -> (Mesh, Vec<usize>) {
         [corners[corner[0]], corners[corner[1]], corners[corner[2]]]
     };
     (Mesh::new(points, order.iter().map(shuffled).collect()).unwrap(), number)
+}
+
+/// A square with a hole, two holes that touch, components that touch, triangles of all shapes, an unused vertex.
+pub(crate) fn assorted() -> Vec<Mesh> {
+    let with_unused = [irregular(3).points(), &[[0.5, 0.5]]].concat();
+    vec![
+        square(3),
+        irregular(4),
+        square_without(3, |i, j| (i, j) == (1, 1)),
+        square_without(4, |i, j| i == j && (i == 1 || i == 2)),
+        square_without(4, |i, j| (i + j) % 2 == 0),
+        Mesh::new(with_unused, irregular(3).triangles().to_vec()).unwrap(),
+    ]
+}
+
+/// How far the vertices are from the means of their parents, where the coarsest vertices lie as in `coarsest`.
+pub(crate) fn ancestry_defect(mesh: &Mesh, coarsest: &[[f64; 2]]) -> f64 {
+    let prolong = |points: &[[f64; 2]], parents: &Parents| -> Vec<[f64; 2]> {
+        let at = |end: u32| points[end as usize];
+        let mean = |&[a, b]: &[u32; 2]| [0, 1].map(|axis| 0.5 * (at(a)[axis] + at(b)[axis]));
+        parents.ends().iter().map(mean).collect()
+    };
+    let points = mesh.ancestry().iter().fold(coarsest.to_vec(), |points, parents| prolong(&points, parents));
+    let distance = |(p, q): (&[f64; 2], &[f64; 2])| (p[0] - q[0]).abs().max((p[1] - q[1]).abs());
+    points.iter().zip(mesh.points()).map(distance).fold(0.0, f64::max)
 }

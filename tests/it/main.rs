@@ -2,6 +2,7 @@
 
 mod common;
 
+mod adaptive_hierarchy;
 #[cfg(feature = "cli")]
 mod answer;
 mod backends;

@@ -16,6 +16,13 @@ const COINCIDENCE: f64 = 1e-12;
 /// What rounding can move a coordinate by, relative to the largest: far from the origin it exceeds [`COINCIDENCE`].
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
+/// Points of a mesh between these corners are not told apart when they are closer than this.
+pub(in crate::mesh) fn resolution(lower: [f64; 2], upper: [f64; 2]) -> f64 {
+    let longer_side = (upper[0] - lower[0]).max(upper[1] - lower[1]);
+    let largest = lower.into_iter().chain(upper).fold(0.0, |l: f64, x| l.max(x.abs()));
+    (COINCIDENCE * longer_side).max(ROUNDING * largest)
+}
+
 /// An edge with a triangle on one side only, run through with the domain on its left.
 #[derive(Clone, Copy)]
 pub(super) struct BoundaryEdge {
@@ -35,9 +42,7 @@ impl<'m> Boundary<'m> {
     pub(super) fn new(points: &'m [[f64; 2]], edges: &'m [BoundaryEdge]) -> Self {
         let ends = edges.iter().flat_map(|edge| edge.ends).map(|a| points[a]);
         let bounds = Bounds::around(ends, 0.0);
-        let largest = bounds.lower.into_iter().chain(bounds.upper).fold(0.0, |l: f64, x| l.max(x.abs()));
-        let resolution = (COINCIDENCE * bounds.longer_side()).max(ROUNDING * largest);
-        Self { points, edges, resolution }
+        Self { points, edges, resolution: resolution(bounds.lower, bounds.upper) }
     }
 
     /// All checks; those with the most precise messages come first.
