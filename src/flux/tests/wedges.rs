@@ -23,17 +23,17 @@ fn differences(problem: &ContactProblem, mesh: &Mesh, kind: Reconstruction) -> [
     let load = [moments[0].as_slice(), moments[1].as_slice()];
     let wedges = WedgeFluxes::new(&d, &around, solution.displacement(), load, solution.lambda());
     let (mut distances, mut traces) = (Largest::default(), Largest::default());
-    for i in 0..2 {
+    for (i, flux) in fluxes.iter().enumerate() {
         let q = discrete_flux(&d, i, &solution.displacement()[i]);
-        for k in 0..mesh.triangles().len() {
-            let expected = (6 * k..6 * (k + 1)).map(|t| fluxes[i].distance_sq(t, q[k])).sum::<f64>();
+        for (k, &q) in q.iter().enumerate() {
+            let expected = (6 * k..6 * (k + 1)).map(|t| flux.distance_sq(t, q)).sum::<f64>();
             distances.compare(wedges.distance_sq(k)[i], expected);
             for corner in (0..3).filter(|&corner| is_boundary_edge(mesh, &around, k, corner)) {
                 let found = wedges.boundary_outward(i, k, corner);
                 // The first half edge of wedge 3 k + corner, and the second of the next one's.
                 let [first, last] = [2 * (3 * k + corner), 2 * (3 * k + (corner + 1) % 3) + 1];
-                traces.compare(found[0], fluxes[i].outward()[first][2]);
-                traces.compare(found[1], fluxes[i].outward()[last][1]);
+                traces.compare(found[0], flux.outward()[first][2]);
+                traces.compare(found[1], flux.outward()[last][1]);
             }
         }
     }

@@ -113,7 +113,7 @@ fn on_boundary(exact: &ExactSolution, flux: &Flux, d: &Discretization) -> f64 {
             let difference = exact.height(x, y) - heights[0] - s * (heights[1] - heights[0]);
             (flux.normal_trace(t)[edge] + along) * difference
         };
-        let weight = |k: usize| [1.0, 4.0, 2.0][if k % 8 == 0 { 0 } else { 2 - k % 2 }] / 24.0;
+        let weight = |k: usize| [1.0, 4.0, 2.0, 4.0, 2.0, 4.0, 2.0, 4.0, 1.0][k] / 24.0;
         sum += length * (0..=8).map(|k| weight(k) * integrand(k as f64 / 8.0)).sum::<f64>();
     }
     sum

@@ -84,9 +84,9 @@ fn the_constant_of_friedrichs_is_that_of_the_rectangle() {
 /// The lift on one triangle with the edge from (0, 0) to (1, 0) against its gradient by differences.
 #[test]
 fn the_lift_has_the_seminorm_of_its_gradient() {
-    let points = vec![[0.0, 0.0], [1.0, 0.0], [0.3, 0.8], [0.5, -1.0], [-1.0, 1.0], [2.0, 1.0]];
+    let points = [[0.0, 0.0], [1.0, 0.0], [0.3, 0.8], [0.5, -1.0], [-1.0, 1.0], [2.0, 1.0]];
     // The first triangle is surrounded but at its lower edge.
-    let triangles = vec![[0, 1, 2], [0, 2, 4], [1, 5, 2]];
+    let triangles = [[0, 1, 2], [0, 2, 4], [1, 5, 2]];
     let mesh = Mesh::new([&points[..3], &points[4..]].concat(), renumbered(&triangles)).unwrap();
     let g = |x: f64, y: f64| 1.0 + x * (1.0 - x) + y;
     let problem = ContactProblem::builder().height(Function::from_fn(g)).build().unwrap();
