@@ -2,6 +2,7 @@
 //!
 //! Strings are parsed here and nowhere else. Exit codes: 0 certified; 1 ran, but not certified; 2 bad input or usage.
 
+mod adapt;
 mod answer;
 mod args;
 mod bench;
@@ -10,6 +11,8 @@ mod cases;
 mod check;
 mod converge;
 mod export;
+mod levels;
+mod memory;
 mod progress;
 mod section;
 mod setup;
@@ -66,6 +69,7 @@ fn run(command: &Command) -> Result<(), Failure> {
         Command::Solve(arguments) => solve::run(arguments),
         Command::Check(arguments) => check::run(arguments),
         Command::Converge(arguments) => converge::run(arguments),
+        Command::Adapt(arguments) => adapt::run(arguments),
         Command::Bench(arguments) => bench::run(arguments),
         Command::Export(arguments) => export::run(arguments),
         Command::Cases(arguments) => cases::run(arguments),

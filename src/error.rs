@@ -4,12 +4,14 @@ mod bound;
 mod lift;
 mod multigrid;
 mod norms;
+mod residual;
 #[cfg(test)]
 mod tests;
 
 pub use bound::{BoundParts, ErrorBound};
 pub use lift::DualNorm;
 pub use norms::{ContactAreas, ErrorNorms};
+pub use residual::residual_indicators;
 
 use thiserror::Error;
 

@@ -34,7 +34,7 @@ pub use read::ReadError;
 pub use refine::Refinement;
 pub use structured::{Pattern, disk, l_shape, rectangle};
 
-pub(crate) use adjacency::VertexTriangles;
+pub(crate) use adjacency::{HalfEdges, VertexTriangles};
 #[cfg(feature = "cli")]
 pub(crate) use generate::MAX_VERTICES;
 

@@ -1,5 +1,6 @@
 //! Results as files that people open with the tools they have.
 
+mod checkpoint;
 mod drawing;
 mod dual;
 mod file;
@@ -11,6 +12,7 @@ mod summary;
 mod vtk;
 mod vtu;
 
+pub use checkpoint::{read_checkpoint, write_checkpoint};
 pub use dual::write_dual_vtu;
 pub use file::{WriteSeek, write_atomically};
 pub use flux::write_flux_vtu;

@@ -15,6 +15,7 @@ mod clarabel;
 mod contact;
 mod export;
 mod kkt;
+mod npz;
 #[cfg(feature = "osqp")]
 mod osqp;
 mod problem;
@@ -28,3 +29,5 @@ pub use contact::contact_qp;
 pub use export::{QpPart, write_matrix_market, write_npz, write_qps};
 pub use kkt::KktResiduals;
 pub use problem::{QpError, QpProblem};
+
+pub(crate) use npz::{NpzWriter, read_vector};

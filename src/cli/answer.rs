@@ -34,12 +34,12 @@ pub(super) fn judge(
     let n = d.interior().len();
     let answer = read_answer(BufReader::new(opened), 2 * n, n).map_err(|error| refused(&error))?;
     let statistics = Statistics { status: Status::Unknown, ..Statistics::of(NAME) };
-    let tolerance = setup.case.solver.tolerance;
+    let tolerance = setup.case.solver.tolerance.or_default();
     let result = certify(d, Candidate::from_answer(d, answer, statistics), tolerance);
     if let Some(folder) = out {
         make_folder(folder)?;
         let verdict = result.as_ref().map_err(|rejected| rejected.as_ref());
-        let summary = Summary::new(&setup.case.title, d, tolerance, verdict, seconds);
+        let summary = Summary::new(&setup.case.title, d, tolerance, verdict, seconds, None);
         write_file(&folder.join(SUMMARY), |out| summary.write(out))?;
     }
     Ok(result)

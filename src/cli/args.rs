@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::case_file::BackendName;
+use crate::study::Tolerance;
 
 /// Where results go when no folder is named: a folder of this one, called like the case file.
 const OUTPUT: &str = "out";
@@ -39,6 +40,8 @@ pub(super) enum Command {
     Check(CheckArguments),
     /// Measure errors and rates on finer meshes, for a built-in case
     Converge(ConvergeArguments),
+    /// Refine where the error is, to a guaranteed accuracy
+    Adapt(AdaptArguments),
     /// Time the solvers side by side, on a built-in family or a case
     Bench(BenchArguments),
     /// Write the quadratic program of a case for other solvers
@@ -57,9 +60,9 @@ pub(super) struct SolveArguments {
     /// Folder for the results [default: out/CASE]
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
-    /// Largest relative residual, in place of the case file's
-    #[arg(long, value_name = "T", value_parser = tolerance, allow_negative_numbers = true)]
-    pub(super) tolerance: Option<f64>,
+    /// Largest relative residual, or auto: as the error allows
+    #[arg(long, value_name = "T", value_parser = tolerance_or_auto, allow_negative_numbers = true)]
+    pub(super) tolerance: Option<Tolerance>,
     /// Leave the backend's answer as it is
     #[arg(long)]
     pub(super) no_polish: bool,
@@ -90,6 +93,30 @@ pub(super) struct ConvergeArguments {
     /// Number of meshes, each refined once more
     #[arg(long, value_name = "N", default_value_t = 5)]
     pub(super) levels: usize,
+    /// Solver: auto, multigrid, active-set, clarabel, osqp
+    #[arg(long, value_name = "NAME")]
+    pub(super) backend: Option<BackendName>,
+    /// Folder, whose levels are kept [default: out/CASE]
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct AdaptArguments {
+    #[command(flatten)]
+    pub(super) case: CaseArguments,
+    /// Guaranteed relative error in the energy norm to reach
+    #[arg(long, value_name = "T", default_value = "0.01", value_parser = tolerance, allow_negative_numbers = true)]
+    pub(super) tolerance: f64,
+    /// Stop before the mesh has more vertices
+    #[arg(long, value_name = "N", default_value = "1000000", value_parser = at_least(3))]
+    pub(super) max_vertices: usize,
+    /// Stop before this run has taken so many seconds
+    #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
+    pub(super) time_limit: Option<f64>,
+    /// Stop before so many GiB are needed [default: what is free]
+    #[arg(long, value_name = "GIB", value_parser = positive, allow_negative_numbers = true)]
+    pub(super) memory_limit: Option<f64>,
     /// Solver: auto, multigrid, active-set, clarabel, osqp
     #[arg(long, value_name = "NAME")]
     pub(super) backend: Option<BackendName>,
@@ -187,6 +214,13 @@ pub(super) fn output_folder(case: &Path, named: Option<&PathBuf>) -> PathBuf {
     named.cloned().unwrap_or_else(|| PathBuf::from(OUTPUT).join(stem))
 }
 
+fn tolerance_or_auto(text: &str) -> Result<Tolerance, String> {
+    match text {
+        "auto" => Ok(Tolerance::Auto),
+        _ => tolerance(text).map(Tolerance::Fixed).map_err(|error| error + ", or auto"),
+    }
+}
+
 fn tolerance(text: &str) -> Result<f64, String> {
     let value = text.parse().ok().filter(|&value| value > 0.0 && value < 1.0);
     value.ok_or("choose a number between 0 and 1".into())
@@ -206,6 +240,11 @@ fn at_least(least: usize) -> impl Fn(&str) -> Result<usize, String> + Clone + Se
 fn seconds(text: &str) -> Result<f64, String> {
     let value = text.parse().ok().filter(|&value: &f64| value > 0.0 && value <= LONGEST);
     value.ok_or_else(|| format!("choose seconds above 0, at most {LONGEST:.0}"))
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    let value = text.parse().ok().filter(|&value: &f64| value > 0.0 && value.is_finite());
+    value.ok_or_else(|| "choose a number above 0".into())
 }
 
 /// What clap has to say, without its paragraphs on usage and on arguments that begin with a hyphen.

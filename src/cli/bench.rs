@@ -125,7 +125,7 @@ impl<'a> Bench<'a> {
         let Setup { name, case, mut family, .. } = Setup::new(&arguments, self.progress)?;
         check_refinements(&name, &family, levels - 1)?;
         self.title.clone_from(&case.title);
-        self.options.tolerance = bench.tolerance.unwrap_or(case.solver.tolerance);
+        self.options.tolerance = bench.tolerance.unwrap_or(case.solver.tolerance.or_default());
         let stem = arguments.path.file_stem().unwrap_or(arguments.path.as_os_str());
         let stem = stem.to_string_lossy();
         make_folder(&self.folder)?;

@@ -11,6 +11,7 @@ use super::Failure;
 use super::section::{Section, as_number};
 use crate::mesh::{MeshSize, Pattern};
 use crate::problem::{Case, ContactProblem, Domain, ExactSolution, Expression, Function};
+use crate::study::Tolerance;
 
 /// Cells of a structured mesh when the case file does not say.
 const DEFAULT_CELLS: usize = 64;
@@ -56,8 +57,8 @@ pub enum MeshSource {
 pub struct SolverSettings {
     /// Which solver.
     pub backend: BackendName,
-    /// Largest relative residual.
-    pub tolerance: f64,
+    /// Largest relative residual, or one that follows the error bound.
+    pub tolerance: Tolerance,
     /// Whether to polish.
     pub polish: bool,
     /// Limit of iterations.
@@ -154,6 +155,16 @@ impl CaseFile {
         let solver = solver(&mut top)?;
         top.finish()?;
         Ok(Self { title, problem, exact, mesh, refine, solver })
+    }
+}
+
+impl CaseFile {
+    /// The domain, where it is not given by a mesh file.
+    pub(super) fn domain(&self) -> Option<&Domain> {
+        match &self.mesh {
+            MeshSource::File(_) => None,
+            MeshSource::Generator { domain, .. } => Some(domain),
+        }
     }
 }
 
@@ -372,12 +383,10 @@ fn solver(top: &mut Section) -> Result<SolverSettings, Failure> {
             .parse()
             .map_err(|problem: String| section.error("backend", format!("= {name:?}: {problem}")))?,
     };
-    let tolerance = section.number("tolerance")?.unwrap_or(1e-8);
-    if !(tolerance > 0.0 && tolerance < 1.0) {
-        return Err(
-            section.error("tolerance", format!("= {tolerance} is out of range: choose between 0 and 1"))
-        );
-    }
+    let tolerance = match section.take("tolerance") {
+        None => Tolerance::Fixed(1e-8),
+        Some(value) => tolerance(&value).map_err(|problem| section.error("tolerance", problem))?,
+    };
     let time_limit = section.number("time_limit")?;
     if let Some(seconds) = time_limit
         && !(seconds > 0.0 && seconds.is_finite())
@@ -395,4 +404,17 @@ fn solver(top: &mut Section) -> Result<SolverSettings, Failure> {
     };
     section.finish()?;
     Ok(settings)
+}
+
+/// A number, or "auto".
+fn tolerance(value: &Value) -> Result<Tolerance, String> {
+    if value.as_str() == Some("auto") {
+        return Ok(Tolerance::Auto);
+    }
+    let number = as_number(value).ok_or("must be a number or \"auto\"")?;
+    if number > 0.0 && number < 1.0 {
+        Ok(Tolerance::Fixed(number))
+    } else {
+        Err(format!("= {number} is out of range: choose between 0 and 1"))
+    }
 }

@@ -40,7 +40,7 @@ fn case_file(case: Case) -> String {
         text += &format!("{value:16} # {}: {}\n", parameter.meaning, parameter.condition());
     }
     text += "\n[mesh]\ncells = 64          # or size = 0.02 for an unstructured mesh\n";
-    text += "refine = 0\n\n[solver]\nbackend = \"clarabel\"\ntolerance = 1e-8\n";
+    text += "refine = 0\n\n[solver]\nbackend = \"auto\"\ntolerance = 1e-8\n";
     text
 }
 

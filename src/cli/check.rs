@@ -12,6 +12,7 @@ use crate::fem::element_loads;
 use crate::flux::{FluxDefects, Reconstruction, Reconstructor};
 use crate::mesh::SubTriangulation;
 use crate::problem::ContactProblem;
+use crate::study::Tolerance;
 
 /// The second line above a result that nobody has polished.
 const AS_IT_IS: &str = "as it is";
@@ -28,7 +29,7 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<(), Failure> {
     let progress = Progress::new(arguments.case.quiet);
     let mut setup = Setup::new(&arguments.case, &progress)?;
     if let Some(tolerance) = arguments.tolerance {
-        setup.case.solver.tolerance = tolerance;
+        setup.case.solver.tolerance = Tolerance::Fixed(tolerance);
     }
     let (d, seconds) = setup.discretize(&progress)?;
     let (columns, remedy) = match &arguments.answer {
@@ -45,7 +46,8 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<(), Failure> {
         let unknowns = grouped(2 * d.interior().len());
         let title = format!(
             "{}: {unknowns} unknowns, tolerance {:.0e}\n",
-            setup.case.title, setup.case.solver.tolerance
+            setup.case.title,
+            setup.case.solver.tolerance.or_default()
         );
         let fluxes = match columns.iter().find_map(|column| column.result.as_ref().ok()) {
             Some(solution) => flux_lines(&setup.case.problem, &d, solution)
@@ -98,7 +100,7 @@ fn column(
     Ok(Column {
         heading: heading(backend, way),
         must_certify: settings.polish,
-        result: certify(d, candidate, settings.tolerance),
+        result: certify(d, candidate, settings.tolerance.or_default()),
     })
 }
 

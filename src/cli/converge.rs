@@ -1,24 +1,23 @@
 //! `membranes converge`.
 
-use std::io::{self, Write};
 use std::path::Path;
 
 use super::Failure;
 use super::args::ConvergeArguments;
+use super::levels::{Levels, failure, origin};
 use super::progress::Progress;
 use super::setup::{Setup, make_folder, options, solver, write_file};
 use super::terminal::{grouped, print};
 use crate::output::{RatesPicture, Series, render_rates};
-use crate::study::{ConvergenceStudy, LevelErrors, MEASURES, StudyError, fitted_rate, markdown, rate};
+use crate::study::{ConvergenceStudy, LevelErrors, MEASURES, fitted_rate, markdown, rate};
 
 const LEVELS: &str = "summary.csv";
 const TABLE: &str = "convergence.md";
 const PICTURE: &str = "convergence.png";
 /// The slopes to compare with: those of the theory, and that of a discontinuous action in L2.
 const SLOPES: [f64; 4] = [0.5, 1.0, 1.5, 2.0];
-/// What the levels belong to: a run of another case file, solver or first mesh starts anew.
+/// What the levels belong to.
 const ORIGIN: &str = "converge.toml";
-const VERSION: &str = concat!("membranes ", env!("CARGO_PKG_VERSION"));
 
 pub(super) fn run(arguments: &ConvergeArguments) -> Result<(), Failure> {
     let progress = Progress::new(arguments.case.quiet);
@@ -33,34 +32,25 @@ pub(super) fn run(arguments: &ConvergeArguments) -> Result<(), Failure> {
     }
     let folder = arguments.case.output_folder(arguments.out.as_ref());
     make_folder(&folder)?;
-    let backend = setup.case.solver.backend.as_str();
-    let origin = format!(
-        "# {VERSION}, solved by {backend}, refined {} times first\n{}",
-        arguments.case.refine, setup.text
-    );
-    let mut levels = levels_so_far(&folder, &origin)?;
+    let kept = Levels { folder: &folder, table: LEVELS, origin: ORIGIN };
+    let origin = origin(&arguments.case, setup.case.solver.backend, &setup.text);
+    let mut levels: Vec<LevelErrors> = kept.so_far(&origin)?;
     levels.truncate(arguments.levels);
 
     let settings = &setup.case.solver;
     let solver = solver(settings.backend);
-    let failure = |name: &str, error: StudyError| match error {
-        StudyError::Rejected { .. } | StudyError::Solver(_) | StudyError::Measure(_) => {
-            Failure::NotCertified(format!("{name}: {error}"))
-        }
-        _ => Failure::Input(format!("{name}: {error}")),
-    };
-    let mut study = ConvergenceStudy::new(exact, setup.family, solver, options(settings))
-        .map_err(|error| failure(&setup.name, error))?;
+    let mut study = ConvergenceStudy::new(exact, setup.family, solver, options(settings), settings.tolerance)
+        .map_err(|error| failure(&setup.name, &error))?;
     let known = levels.len();
     if known < arguments.levels {
         progress.steps(arguments.levels);
         for level in 0..arguments.levels {
             progress.stage(format!("level {} of {}", level + 1, arguments.levels));
             if level < known {
-                study.skip_level().map_err(|error| failure(&setup.name, error))?;
+                study.skip_level().map_err(|error| failure(&setup.name, &error))?;
             } else {
-                levels.push(study.next_level().map_err(|error| failure(&setup.name, error))?);
-                write_file(&folder.join(LEVELS), |out| write_csv(&levels, out))?;
+                levels.push(study.next_level().map_err(|error| failure(&setup.name, &error))?);
+                kept.write(&levels)?;
                 write_file(&folder.join(TABLE), |out| out.write_all(markdown(&levels).as_bytes()))?;
             }
             progress.step();
@@ -72,31 +62,6 @@ pub(super) fn run(arguments: &ConvergeArguments) -> Result<(), Failure> {
         print(&table(&setup.case.title, &levels, &folder))?;
     }
     Ok(())
-}
-
-/// The levels that an earlier run of the same origin has left; none when it was another one.
-fn levels_so_far(folder: &Path, origin: &str) -> Result<Vec<LevelErrors>, Failure> {
-    let same_origin = std::fs::read_to_string(folder.join(ORIGIN)).is_ok_and(|text| text == origin);
-    if same_origin && let Ok(mut reader) = csv::Reader::from_path(folder.join(LEVELS)) {
-        let levels: Result<Vec<LevelErrors>, _> = reader.deserialize().collect();
-        // A table that is not ours, or of another version, is made anew.
-        return Ok(levels.unwrap_or_default());
-    }
-    // Levels of another origin go first: a run that is stopped here must not find them under the new one.
-    match std::fs::remove_file(folder.join(LEVELS)) {
-        Err(error) if error.kind() != io::ErrorKind::NotFound => {
-            return Err(Failure::Input(format!("{}: cannot remove: {error}", folder.join(LEVELS).display())));
-        }
-        _ => {}
-    }
-    write_file(&folder.join(ORIGIN), |out| out.write_all(origin.as_bytes()))?;
-    Ok(Vec::new())
-}
-
-fn write_csv(levels: &[LevelErrors], out: &mut dyn Write) -> io::Result<()> {
-    let mut writer = csv::Writer::from_writer(out);
-    levels.iter().try_for_each(|level| writer.serialize(level))?;
-    writer.flush()
 }
 
 /// The errors against the mesh size.
@@ -115,19 +80,19 @@ fn write_picture(folder: &Path, title: &str, levels: &[LevelErrors]) -> Result<(
 fn table(title: &str, levels: &[LevelErrors], folder: &Path) -> String {
     let mut text = format!("{title}\n  vertices");
     for measure in MEASURES {
-        text += &format!(" {:>10}", shortened(measure.name));
+        text += &format!(" {:>8}", shortened(measure.name));
     }
-    text.push('\n');
+    text += " effectiv\n";
     for (k, level) in levels.iter().enumerate() {
         text += &format!("{:>10}", grouped(level.vertices));
         for measure in MEASURES {
-            text += &format!(" {:>10.2e}", (measure.of)(level));
+            text += &format!(" {:>8.2e}", (measure.of)(level));
         }
-        text.push('\n');
+        text += &format!(" {:>8.2}\n", level.effectivity());
         if k > 0 {
             text += &format!("{:>10}", "rate");
             for measure in MEASURES {
-                text += &format!(" {:>10}", rate_text(rate(measure, &levels[k - 1], level)));
+                text += &format!(" {:>8}", rate_text(rate(measure, &levels[k - 1], level)));
             }
             text.push('\n');
         }
@@ -135,7 +100,7 @@ fn table(title: &str, levels: &[LevelErrors], folder: &Path) -> String {
     if levels.len() > 2 {
         text += &format!("{:>10}", "all levels");
         for measure in MEASURES {
-            text += &format!(" {:>10}", rate_text(fitted_rate(measure, levels)));
+            text += &format!(" {:>8}", rate_text(fitted_rate(measure, levels)));
         }
         text.push('\n');
     }
@@ -148,5 +113,6 @@ fn rate_text(rate: Option<f64>) -> String {
 
 /// A heading that fits into a column.
 fn shortened(name: &str) -> String {
-    name.replace("lambda in ", "lambda ").replace("H^-1", "H-1").replace("contact area", "area")
+    let name = name.replace("lambda in ", "lam ").replace("H^-1", "H-1").replace("u at nodes", "nodes");
+    name.replace("contact area", "area")
 }

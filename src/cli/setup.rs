@@ -111,7 +111,7 @@ pub(super) fn solver(name: BackendName) -> Box<dyn ContactSolver> {
 /// What the settings ask of a solver.
 pub(super) fn options(settings: &SolverSettings) -> SolverOptions {
     SolverOptions {
-        tolerance: settings.tolerance,
+        tolerance: settings.tolerance.or_default(),
         max_iterations: settings.max_iterations,
         time_limit: settings.time_limit,
         polish: settings.polish,

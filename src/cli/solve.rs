@@ -9,19 +9,21 @@ use super::case_file::CaseFile;
 use super::progress::Progress;
 use super::setup::{Setup, make_folder, options, solver, write_file};
 use super::terminal::{fields, grouped, print};
-use crate::action::{ContactSolution, certify};
+use crate::action::ContactSolution;
 use crate::discretization::Discretization;
+use crate::error::ErrorBound;
 use crate::fem::element_loads;
 use crate::flux::{Reconstruction, Reconstructor};
 use crate::mesh::{DualMesh, SubTriangulation};
 use crate::output::picture::{Picture, render};
 use crate::output::{MeshPicture, Seconds, Summary, render_mesh, write_dual_vtu, write_flux_vtu, write_vtu};
 use crate::solver::PolishReport;
+use crate::study::{AccuracyError, Bounded, solve_bounded};
 
 /// The files that hold a solution: present only when it is certified.
-const SOLUTION: &str = "solution.vtu";
-const PICTURE: &str = "membranes.png";
-const SUMMARY: &str = "summary.json";
+pub(super) const SOLUTION: &str = "solution.vtu";
+pub(super) const PICTURE: &str = "membranes.png";
+pub(super) const SUMMARY: &str = "summary.json";
 /// What `--dual` adds.
 const DUAL: &str = "dual.vtu";
 const MESH_PICTURE: &str = "mesh.png";
@@ -41,41 +43,43 @@ pub(super) fn run(arguments: &SolveArguments) -> Result<(), Failure> {
         settings.backend.as_str(),
         grouped(2 * d.interior().len())
     ));
-    let candidate = solver(settings.backend)
-        .solve(&d, &options(settings))
-        .map_err(|error| Failure::NotCertified(format!("{}: {error}", setup.name)))?;
-    let polish = candidate.statistics.polish;
-    let result = certify(&d, candidate, settings.tolerance);
+    let options = options(settings);
+    let problem = &setup.case.problem;
+    let mut solver = solver(settings.backend);
+    let domain = setup.case.domain();
+    let result = solve_bounded(problem, domain, &d, &mut *solver, &options, settings.tolerance);
 
     let title = &setup.case.title;
     match result {
-        Ok(solution) => {
+        Ok(Bounded { solution, bound, tolerance, bound_seconds }) => {
             progress.stage("writing the results");
             let start = Instant::now();
-            write_solution(&folder, title, &d, &solution)?;
+            write_solution(&folder, title, &d, &solution, &bound)?;
             if arguments.dual {
                 write_dual(&folder, &setup.case, &d, &solution)?;
             }
-            let seconds = Seconds { output: start.elapsed().as_secs_f64(), ..seconds };
-            let summary = Summary::new(title, &d, settings.tolerance, Ok(&solution), seconds);
+            let output = start.elapsed().as_secs_f64();
+            let seconds = Seconds { bound: bound_seconds, output, ..seconds };
+            let summary = Summary::new(title, &d, tolerance, Ok(&solution), seconds, Some(&bound));
             write_file(&folder.join(SUMMARY), |out| summary.write(out))?;
             drop(progress);
             if !arguments.case.quiet {
-                print(&table(&summary, polish, &folder))?;
+                print(&table(&summary, solution.statistics().polish, &folder))?;
             }
             Ok(())
         }
-        Err(rejected) => {
+        Err(AccuracyError::Rejected(rejected, tolerance)) => {
             // What an earlier run left is not the solution of this one.
             for name in [SOLUTION, PICTURE, DUAL, MESH_PICTURE, FLUX] {
                 let _ = std::fs::remove_file(folder.join(name));
             }
-            let summary = Summary::new(title, &d, settings.tolerance, Err(&rejected), seconds);
+            let summary = Summary::new(title, &d, tolerance, Err(&rejected), seconds, None);
             write_file(&folder.join(SUMMARY), |out| summary.write(out))?;
             let status = rejected.statistics.status.as_str();
             let remedy = "allow more iterations or time, or a larger tolerance, or keep the polish on";
             Err(Failure::NotCertified(format!("{}: {rejected} (status {status}); {remedy}", setup.name)))
         }
+        Err(error) => Err(Failure::NotCertified(format!("{}: {error}", setup.name))),
     }
 }
 
@@ -91,13 +95,15 @@ fn override_settings(setup: &mut Setup, arguments: &SolveArguments) {
     settings.polish &= !arguments.no_polish;
 }
 
-fn write_solution(
+/// `solution.vtu` and `membranes.png`.
+pub(super) fn write_solution(
     folder: &Path,
     title: &str,
     d: &Discretization,
     solution: &ContactSolution,
+    bound: &ErrorBound,
 ) -> Result<(), Failure> {
-    write_file(&folder.join(SOLUTION), |out| write_vtu(d.mesh(), solution, out))?;
+    write_file(&folder.join(SOLUTION), |out| write_vtu(d.mesh(), solution, bound, out))?;
     let [upper, lower] = solution.displacement();
     let picture = Picture {
         title,
@@ -162,6 +168,7 @@ fn table(summary: &Summary, polish: Option<PolishReport>, folder: &Path) -> Stri
         ("chosen", summary.choice.clone().unwrap_or_default()),
         ("polish", polish.map_or_else(String::new, polish_line)),
         ("certified", format!("largest residual {worst:.1e} (tolerance {:.0e})", summary.tolerance)),
+        ("error", error_line(summary)),
         ("energy", number(summary.energy)),
         (
             "contact",
@@ -176,8 +183,8 @@ fn table(summary: &Summary, polish: Option<PolishReport>, folder: &Path) -> Stri
         (
             "seconds",
             format!(
-                "mesh {:.2}, assembly {:.2}, setup {:.2}, solve {:.2}, output {:.2}",
-                seconds.mesh, seconds.assembly, seconds.setup, seconds.solve, seconds.output
+                "mesh {:.2}, assembly {:.2}, setup {:.2}, solve {:.2}, bound {:.2}, output {:.2}",
+                seconds.mesh, seconds.assembly, seconds.setup, seconds.solve, seconds.bound, seconds.output
             ),
         ),
         ("files", format!("{}/{{{SOLUTION}, {SUMMARY}, {PICTURE}}}", folder.display())),
@@ -191,6 +198,15 @@ fn solver_line(summary: &Summary) -> String {
     let levels = level_iterations.len();
     let on_levels = if levels > 1 { format!(" on the finest of {levels} levels") } else { String::new() };
     format!("{backend}: {status} in {iterations} iterations{on_levels}")
+}
+
+fn error_line(summary: &Summary) -> String {
+    let Some(bound) = summary.error_bound else { return String::new() };
+    let relative = match summary.relative_error_bound {
+        Some(relative) => format!("{:.2} %, guaranteed", 100.0 * relative),
+        None => "more than half of it: refine the mesh".into(),
+    };
+    format!("at most {bound:.3e} in the energy norm ({relative})")
 }
 
 fn polish_line(polish: PolishReport) -> String {

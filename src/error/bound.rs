@@ -23,6 +23,7 @@ mod trace;
 use std::f64::consts::PI;
 
 use cells::{Cells, Sums};
+use serde::Serialize;
 use trace::Trace;
 
 use super::MeasureError;
@@ -52,7 +53,7 @@ pub struct ErrorBound {
 
 /// What a bound consists of, each part as a norm of its own; the bound is at most the sum of the parts, with `boundary` and
 /// `algebraic` counted twice.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct BoundParts {
     /// The distance of the reconstructed fluxes from `-mu_i grad u_ih`: the discretisation error.
     pub flux: f64,

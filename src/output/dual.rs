@@ -34,7 +34,7 @@ pub fn write_dual_vtu(dual: &DualMesh, solution: &ContactSolution, out: impl Wri
         DataArray::integers("vertex", at.clone()),
         DataArray::flags("contact", at.map(|a| solution.contact()[a])),
     ];
-    write_grid(out, &points, &polygons, (Location::Cells, &data))
+    write_grid(out, &points, &polygons, &[(Location::Cells, &data)])
 }
 
 #[cfg(test)]

@@ -29,7 +29,7 @@ pub fn write_flux_vtu(
         DataArray::floats("lambda", (0..mesh.triangles().len()).map(|t| solution.lambda()[sub.vertex_of(t)])),
     ];
     let triangles = Cells::new(VTK_TRIANGLE, mesh.triangles().iter().copied());
-    write_grid(out, mesh.points(), &triangles, (Location::Cells, &data))
+    write_grid(out, mesh.points(), &triangles, &[(Location::Cells, &data)])
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use crate::action::{ContactSolution, Rejected, Residuals};
 use crate::discretization::Discretization;
+use crate::error::{BoundParts, ErrorBound};
 use crate::solver::Statistics;
 
 /// The contents of `summary.json`, field by field. Other programs read the names.
@@ -51,6 +52,14 @@ pub struct Summary {
     pub contact_area: Option<f64>,
     /// `int lambda_h`; absent when not certified.
     pub total_force: Option<f64>,
+    /// A guaranteed bound of the energy error; absent when not certified.
+    pub error_bound: Option<f64>,
+    /// The bound relative to the energy norm of the exact solution; absent also when it is too large to know that.
+    pub relative_error_bound: Option<f64>,
+    /// What the bound consists of; absent when not certified.
+    pub error_parts: Option<BoundParts>,
+    /// The energy norm of the solution; absent when not certified.
+    pub energy_norm: Option<f64>,
     /// The relative residuals; absent when there was nothing to measure.
     pub residuals: Option<ResidualSummary>,
     /// Where the time went.
@@ -93,6 +102,8 @@ pub struct Seconds {
     pub setup: f64,
     /// Iterating and polishing.
     pub solve: f64,
+    /// Bounding the error.
+    pub bound: f64,
     /// Writing the files, but for the summary itself.
     pub output: f64,
 }
@@ -105,6 +116,7 @@ impl Summary {
         tolerance: f64,
         result: Result<&ContactSolution, &Rejected>,
         mut seconds: Seconds,
+        bound: Option<&ErrorBound>,
     ) -> Self {
         let (statistics, residuals) = match result {
             Ok(solution) => (solution.statistics(), Some(solution.residuals())),
@@ -135,6 +147,10 @@ impl Summary {
             contact_vertices: solution.map(|s| s.contact().iter().filter(|&&contact| contact).count()),
             contact_area: solution.map(ContactSolution::contact_area),
             total_force: solution.map(ContactSolution::total_force),
+            error_bound: bound.map(|bound| bound.total),
+            relative_error_bound: bound.and_then(ErrorBound::relative),
+            error_parts: bound.map(|bound| bound.parts),
+            energy_norm: bound.map(|bound| bound.energy_norm),
             residuals: residuals.map(ResidualSummary::from),
             seconds,
         }

@@ -84,13 +84,9 @@ pub(super) fn write_grid(
     mut out: impl Write,
     points: &[[f64; 2]],
     cells: &Cells,
-    (location, arrays): (Location, &[DataArray]),
+    sections: &[(Location, &[DataArray])],
 ) -> io::Result<()> {
     let out = &mut out;
-    let section = match location {
-        Location::Points => "PointData",
-        Location::Cells => "CellData",
-    };
     writeln!(out, r#"<?xml version="1.0"?>"#)?;
     writeln!(
         out,
@@ -98,15 +94,21 @@ pub(super) fn write_grid(
     )?;
     writeln!(out, "<UnstructuredGrid>")?;
     writeln!(out, r#"<Piece NumberOfPoints="{}" NumberOfCells="{}">"#, points.len(), cells.count)?;
-    writeln!(out, r#"<{section} Scalars="lambda">"#)?;
-    for DataArray { name, kind, components, bytes } in arrays {
-        write_array(
-            out,
-            &format!(r#"type="{kind}" Name="{name}" NumberOfComponents="{components}""#),
-            bytes,
-        )?;
+    for (location, arrays) in sections {
+        let section = match location {
+            Location::Points => "PointData",
+            Location::Cells => "CellData",
+        };
+        let has_lambda = arrays.iter().any(|array| array.name == "lambda");
+        let first = if has_lambda { r#" Scalars="lambda""# } else { "" };
+        writeln!(out, "<{section}{first}>")?;
+        for DataArray { name, kind, components, bytes } in *arrays {
+            let attributes = format!(r#"type="{kind}" Name="{name}" NumberOfComponents="{components}""#);
+            write_array(out, &attributes, bytes)?;
+        }
+        writeln!(out, "</{section}>")?;
     }
-    writeln!(out, "</{section}>\n<Points>")?;
+    writeln!(out, "<Points>")?;
     let coordinates: Vec<u8> =
         points.iter().flat_map(|&[x, y]| [x, y, 0.0]).flat_map(f64::to_le_bytes).collect();
     write_array(out, r#"type="Float64" Name="Points" NumberOfComponents="3""#, &coordinates)?;
@@ -187,7 +189,7 @@ mod tests {
             let data = [DataArray::floats("values", values.iter().copied())];
             let cells = Cells::new(VTK_POLYGON, (0..count).map(|k| [k, k + 1, k + 2, k + 3]));
             let mut file = Vec::new();
-            write_grid(&mut file, &vec![[1.0, -2.0]; count], &cells, (Location::Cells, &data)).unwrap();
+            write_grid(&mut file, &vec![[1.0, -2.0]; count], &cells, &[(Location::Cells, &data)]).unwrap();
             let file = String::from_utf8(file).unwrap();
             assert!(file.contains(&format!(r#"NumberOfPoints="{count}" NumberOfCells="{count}""#)));
             assert_eq!(floats(&read_array(&file, "values").unwrap()), values);

@@ -2,12 +2,10 @@
 
 use std::io::{self, Seek, Write};
 
-use npyz::WriterBuilder;
 use sprs::CsMat;
-use zip::write::SimpleFileOptions;
-use zip::{CompressionMethod, ZipWriter};
 
 use super::QpProblem;
+use super::npz::NpzWriter;
 use crate::discretization::Discretization;
 
 /// Writes the program and the mesh behind it as a numpy archive, which scipy loads without further help.
@@ -19,9 +17,9 @@ use crate::discretization::Discretization;
 /// # Errors
 /// When writing fails.
 pub fn write_npz(d: &Discretization, qp: &QpProblem, out: impl Write + Seek) -> io::Result<()> {
-    let mut archive = Npz { zip: ZipWriter::new(out) };
-    archive.matrix("P", &symmetric(qp.p_upper()))?;
-    archive.matrix("A", qp.a())?;
+    let mut archive = NpzWriter::new(out);
+    write_matrix(&mut archive, "P", &symmetric(qp.p_upper()))?;
+    write_matrix(&mut archive, "A", qp.a())?;
     archive.floats("q", qp.q(), &[qp.q().len()])?;
     archive.floats("b", qp.b(), &[qp.b().len()])?;
     archive.integers("interior", d.interior(), &[d.interior().len()])?;
@@ -30,46 +28,20 @@ pub fn write_npz(d: &Discretization, qp: &QpProblem, out: impl Write + Seek) -> 
     let (points, triangles) = (d.mesh().points(), d.mesh().triangles());
     archive.floats("points", points.as_flattened(), &[points.len(), 2])?;
     archive.integers("triangles", triangles.as_flattened(), &[triangles.len(), 3])?;
-    archive.zip.finish()?.flush()
+    archive.finish()
 }
 
-/// A zip archive of `.npy` arrays.
-struct Npz<W: Write + Seek> {
-    zip: ZipWriter<W>,
-}
-
-impl<W: Write + Seek> Npz<W> {
-    fn matrix(&mut self, name: &str, matrix: &CsMat<f64>) -> io::Result<()> {
-        self.floats(&format!("{name}_data"), matrix.data(), &[matrix.nnz()])?;
-        self.integers(&format!("{name}_indices"), matrix.indices(), &[matrix.nnz()])?;
-        let start = matrix.indptr();
-        self.integers(&format!("{name}_indptr"), start.into_raw_storage(), &[matrix.cols() + 1])?;
-        self.integers(&format!("{name}_shape"), &[matrix.rows(), matrix.cols()], &[2])
-    }
-
-    fn floats(&mut self, name: &str, values: &[f64], shape: &[usize]) -> io::Result<()> {
-        self.array(name, values.iter().copied(), shape)
-    }
-
-    fn integers(&mut self, name: &str, values: &[usize], shape: &[usize]) -> io::Result<()> {
-        self.array(name, values.iter().map(|&value| value as i64), shape)
-    }
-
-    fn array<T: npyz::AutoSerialize>(
-        &mut self,
-        name: &str,
-        values: impl Iterator<Item = T>,
-        shape: &[usize],
-    ) -> io::Result<()> {
-        let options =
-            SimpleFileOptions::default().compression_method(CompressionMethod::Deflated).large_file(true);
-        self.zip.start_file(format!("{name}.npy"), options)?;
-        let shape: Vec<u64> = shape.iter().map(|&n| n as u64).collect();
-        let mut array =
-            npyz::WriteOptions::new().default_dtype().shape(&shape).writer(&mut self.zip).begin_nd()?;
-        array.extend(values)?;
-        array.finish()
-    }
+/// The arrays of which scipy makes a matrix.
+fn write_matrix(
+    archive: &mut NpzWriter<impl Write + Seek>,
+    name: &str,
+    matrix: &CsMat<f64>,
+) -> io::Result<()> {
+    archive.floats(&format!("{name}_data"), matrix.data(), &[matrix.nnz()])?;
+    archive.integers(&format!("{name}_indices"), matrix.indices(), &[matrix.nnz()])?;
+    let start = matrix.indptr();
+    archive.integers(&format!("{name}_indptr"), start.into_raw_storage(), &[matrix.cols() + 1])?;
+    archive.integers(&format!("{name}_shape"), &[matrix.rows(), matrix.cols()], &[2])
 }
 
 /// The full matrix from its upper triangle in compressed columns.

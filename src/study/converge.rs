@@ -5,12 +5,14 @@ use std::time::Instant;
 use thiserror::Error;
 
 use super::LevelErrors;
-use crate::action::{ContactSolution, Rejected, certify};
+use super::accuracy::{AccuracyError, Bounded, Tolerance, solve_bounded};
+use super::prolongation::Fields;
+use crate::action::Rejected;
 use crate::discretization::{Discretization, DiscretizationError};
 use crate::error::{ErrorNorms, MeasureError};
 use crate::mesh::{MeshError, MeshFamily};
 use crate::problem::{ContactProblem, ExactSolution, ProblemError};
-use crate::solver::{ContactSolver, SolverError, SolverOptions, StartingPoint};
+use crate::solver::{ContactSolver, SolverError, SolverOptions};
 
 /// Solves a case with a known solution on finer and finer meshes, each solve started from the one before.
 pub struct ConvergenceStudy {
@@ -19,9 +21,9 @@ pub struct ConvergenceStudy {
     family: MeshFamily,
     solver: Box<dyn ContactSolver>,
     options: SolverOptions,
+    tolerance: Tolerance,
     level: usize,
-    /// What the last level found: displacements, and the action on the dual cells, over vertices.
-    last: Option<[Vec<f64>; 3]>,
+    last: Option<Fields>,
 }
 
 /// A level of a study fails.
@@ -52,6 +54,16 @@ pub enum StudyError {
     Measure(#[from] MeasureError),
 }
 
+impl StudyError {
+    pub(super) fn at(level: usize, error: AccuracyError) -> Self {
+        match error {
+            AccuracyError::Solver(error) => Self::Solver(error),
+            AccuracyError::Rejected(rejected, _) => Self::Rejected { level, rejected },
+            AccuracyError::Measure(error) => Self::Measure(error),
+        }
+    }
+}
+
 impl ConvergenceStudy {
     /// A study that starts on the current mesh of `family`.
     ///
@@ -62,9 +74,10 @@ impl ConvergenceStudy {
         family: MeshFamily,
         solver: Box<dyn ContactSolver>,
         options: SolverOptions,
+        tolerance: Tolerance,
     ) -> Result<Self, StudyError> {
         let problem = exact.problem()?;
-        Ok(Self { exact, problem, family, solver, options, level: 0, last: None })
+        Ok(Self { exact, problem, family, solver, options, tolerance, level: 0, last: None })
     }
 
     /// Vertices of the coming level.
@@ -77,7 +90,7 @@ impl ConvergenceStudy {
     /// # Errors
     /// [`StudyError`].
     pub fn next_level(&mut self) -> Result<LevelErrors, StudyError> {
-        self.on_next_mesh(|exact, d, solution, level| {
+        self.on_next_mesh(|exact, d, Bounded { solution, bound, .. }, level| {
             let start = Instant::now();
             let norms = ErrorNorms::new(d, solution, exact)?;
             let quality = d.mesh().quality();
@@ -91,6 +104,7 @@ impl ConvergenceStudy {
                 h1: first.hypot(second),
                 l2: norms.l2[0].hypot(norms.l2[1]),
                 energy: norms.energy,
+                bound: bound.total,
                 nodal: norms.nodal_max[0].max(norms.nodal_max[1]),
                 lambda_l2: norms.lambda_l2,
                 lambda_dual: norms.lambda_dual.value,
@@ -117,44 +131,25 @@ impl ConvergenceStudy {
     /// `measure`; returns its result and the seconds up to there.
     fn on_next_mesh<T>(
         &mut self,
-        measure: impl FnOnce(&ExactSolution, &Discretization, &ContactSolution, usize) -> Result<T, StudyError>,
+        measure: impl FnOnce(&ExactSolution, &Discretization, &Bounded, usize) -> Result<T, StudyError>,
     ) -> Result<(T, f64), StudyError> {
         let start = Instant::now();
         let level = self.level;
         let prolonged = match self.last.take() {
             None => None,
-            Some(last) => {
-                let parents = self.family.refine()?;
-                Some(last.map(|values| prolong(values, &parents)))
-            }
+            Some(last) => Some(last.prolonged(&self.family.refine()?)),
         };
         let d = Discretization::new(&self.problem, self.family.mesh())?;
-        let warm_start = prolonged.map(|prolonged| starting_point(&d, prolonged));
+        let warm_start = prolonged.map(|fields| fields.into_start(&d));
         let options = SolverOptions { warm_start, ..self.options.clone() };
-        let found = self.solver.solve(&d, &options)?;
-        let solution = certify(&d, found, self.options.tolerance)
-            .map_err(|rejected| StudyError::Rejected { level, rejected })?;
+        let domain = self.exact.domain();
+        let bounded =
+            solve_bounded(&self.problem, Some(&domain), &d, &mut *self.solver, &options, self.tolerance)
+                .map_err(|error| StudyError::at(level, error))?;
         let seconds = start.elapsed().as_secs_f64();
-        let measured = measure(&self.exact, &d, &solution, level)?;
-        let [u1, u2] = solution.displacement().clone();
-        self.last = Some([u1, u2, solution.lambda().to_vec()]);
+        let measured = measure(&self.exact, &d, &bounded, level)?;
+        self.last = Some(Fields::from(&bounded.solution));
         self.level += 1;
         Ok((measured, seconds))
     }
-}
-
-/// A P1 function on the refined mesh: the mean of the ends at the midpoint of an edge.
-fn prolong(mut values: Vec<f64>, parents: &[[usize; 2]]) -> Vec<f64> {
-    values.extend(parents.iter().map(|_| 0.0));
-    let coarse = values.len() - parents.len();
-    for (k, &[a, b]) in parents.iter().enumerate() {
-        values[coarse + k] = 0.5 * (values[a] + values[b]);
-    }
-    values
-}
-
-/// Prolonged displacements and action as a point to start from.
-fn starting_point(d: &Discretization, [u1, u2, lambda]: [Vec<f64>; 3]) -> StartingPoint {
-    let multiplier = d.interior().iter().map(|&a| lambda[a] * d.dual_area()[a]).collect();
-    StartingPoint { displacement: [u1, u2], multiplier }
 }

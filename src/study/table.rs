@@ -23,6 +23,8 @@ pub struct LevelErrors {
     pub l2: f64,
     /// `sqrt(sum_i mu_i |u_i - u_ih|_{H1}^2)`.
     pub energy: f64,
+    /// The guaranteed bound of `energy`.
+    pub bound: f64,
     /// The largest error of both displacements at a vertex.
     pub nodal: f64,
     /// `||lambda - lambda_h||_{L2}`.
@@ -41,6 +43,13 @@ pub struct LevelErrors {
     pub solve_seconds: f64,
     /// Seconds for the norms.
     pub norm_seconds: f64,
+}
+
+impl LevelErrors {
+    /// The guaranteed bound over the energy error.
+    pub fn effectivity(&self) -> f64 {
+        self.bound / self.energy
+    }
 }
 
 /// An error whose rate is of interest.
@@ -75,15 +84,16 @@ pub fn fitted_rate(measure: Measure, levels: &[LevelErrors]) -> Option<f64> {
     exponent(levels.iter().map(|level| [level.h, (measure.of)(level)]))
 }
 
-/// The levels as a Markdown table: each error with its rate from the level before, and over all levels.
+/// The levels as a Markdown table: each error with its rate from the level before, and over all levels; the effectivity of the
+/// bound.
 pub fn markdown(levels: &[LevelErrors]) -> String {
     let mut text = String::from("| vertices | h |");
     for measure in MEASURES {
         text += &format!(" {} | rate |", measure.name);
     }
-    text += "\n|---:|---:|";
+    text += " effectivity |\n|---:|---:|";
     text += &"---:|---:|".repeat(MEASURES.len());
-    text += "\n";
+    text += "---:|\n";
     for (k, level) in levels.iter().enumerate() {
         text += &format!("| {} | {:.2e} |", level.vertices, level.h);
         for measure in MEASURES {
@@ -91,7 +101,7 @@ pub fn markdown(levels: &[LevelErrors]) -> String {
             let rate = rate.map_or_else(String::new, |rate| format!("{rate:.2}"));
             text += &format!(" {:.2e} | {rate} |", (measure.of)(level));
         }
-        text += "\n";
+        text += &format!(" {:.2} |\n", level.effectivity());
     }
     text += "| all levels | |";
     for measure in MEASURES {
@@ -100,7 +110,7 @@ pub fn markdown(levels: &[LevelErrors]) -> String {
             fitted_rate(measure, levels).map_or_else(String::new, |rate| format!("{rate:.2}"))
         );
     }
-    text + "\n"
+    text + " |\n"
 }
 
 #[cfg(test)]
@@ -117,6 +127,7 @@ mod tests {
             h1: error,
             l2: error,
             energy: error,
+            bound: 1.25 * error,
             nodal: error,
             lambda_l2: error,
             lambda_dual: error,
@@ -154,6 +165,7 @@ mod tests {
         assert_eq!(lines.len(), 5);
         assert!(lines[2].starts_with("| 10 | 5.00e-1 | 2.50e-1 |  |"));
         assert!(lines[3].starts_with("| 10 | 2.50e-1 | 6.25e-2 | 2.00 |"));
+        assert!(lines[3].ends_with("| 1.25 |"));
         assert!(lines[4].starts_with("| all levels | | | 2.00 |"));
         let columns: Vec<usize> = lines.iter().map(|line| line.matches('|').count()).collect();
         assert!(columns.iter().all(|&n| n == columns[0]), "{columns:?}");

@@ -1,0 +1,263 @@
+//! `membranes adapt`.
+
+use std::fs::File;
+use std::io::BufReader;
+use std::path::Path;
+use std::time::Instant;
+
+use super::args::AdaptArguments;
+use super::levels::{Levels, failure, origin};
+use super::memory;
+use super::progress::Progress;
+use super::setup::{Setup, make_folder, options, solver, write_file};
+use super::solve::{PICTURE as MEMBRANES, SOLUTION, SUMMARY, write_solution};
+use super::terminal::{grouped, print};
+use super::{CaseFile, Failure};
+use crate::discretization::Discretization;
+use crate::mesh::{DualMesh, MeshError, SubTriangulation};
+use crate::output::{
+    MeshPicture, RatesPicture, Seconds, Series, Summary, read_checkpoint, render_mesh, render_rates,
+    write_checkpoint,
+};
+use crate::study::{AdaptiveLevel, AdaptiveStudy, StudyError, exponent};
+
+const TABLE: &str = "adapt.csv";
+const ORIGIN: &str = "adapt.toml";
+const CHECKPOINT: &str = "checkpoint.npz";
+const PICTURE: &str = "adapt.png";
+const MESH: &str = "mesh.png";
+
+/// The slope of the best possible rate: the error falls like the root of the number of vertices.
+const OPTIMAL: [f64; 1] = [-0.5];
+
+/// How much larger the next mesh is taken to be while only one is known.
+const GROWTH: f64 = 2.0;
+
+/// Bytes that a run needs for each vertex, measured at a million.
+const BYTES_PER_VERTEX: f64 = 1500.0;
+
+const GIB: f64 = (1u64 << 30) as f64;
+
+/// Why a run ends.
+enum Stop {
+    Reached,
+    Vertices,
+    Time,
+    Memory,
+    TooSmall(MeshError),
+}
+
+pub(super) fn run(arguments: &AdaptArguments) -> Result<(), Failure> {
+    let start = Instant::now();
+    let progress = Progress::new(arguments.case.quiet);
+    let mut setup = Setup::new(&arguments.case, &progress)?;
+    if let Some(backend) = arguments.backend {
+        setup.case.solver.backend = backend;
+    }
+    let folder = arguments.case.output_folder(arguments.out.as_ref());
+    make_folder(&folder)?;
+    let kept = Levels { folder: &folder, table: TABLE, origin: ORIGIN };
+    let origin = origin(&arguments.case, setup.case.solver.backend, &setup.text);
+    let mut levels: Vec<AdaptiveLevel> = kept.so_far(&origin)?;
+    let mut study = study(&setup);
+    progress.stage("going on from the last level");
+    let resumed = resume(&mut study, &folder, levels.len()).map_err(|error| failure(&setup.name, &error))?;
+    levels.truncate(resumed);
+
+    let limits = Limits::new(arguments, start);
+    let stop = loop {
+        if let Some(stop) = limits.stop(&levels) {
+            break stop;
+        }
+        progress.stage(stage(&levels));
+        match study.next_level() {
+            Ok(level) => levels.push(level),
+            Err(StudyError::Mesh(error @ MeshError::TooSmall { .. })) => break Stop::TooSmall(error),
+            Err(error) => return Err(failure(&setup.name, &error)),
+        }
+        kept.write(&levels)?;
+        if let Some(checkpoint) = study.checkpoint() {
+            write_file(&folder.join(CHECKPOINT), |out| write_checkpoint(&checkpoint, out))?;
+        }
+    };
+    progress.stage("writing the results");
+    write_results(&folder, &setup.case, &study, &levels)?;
+    drop(progress);
+    if !arguments.case.quiet {
+        print(&table(&setup.case.title, &levels, &folder))?;
+    }
+    verdict(&setup.name, arguments, &stop, &levels)
+}
+
+fn study(setup: &Setup) -> AdaptiveStudy {
+    let CaseFile { problem, exact, solver: settings, .. } = &setup.case;
+    AdaptiveStudy::new(
+        problem.clone(),
+        setup.case.domain().cloned(),
+        exact.clone(),
+        setup.family.mesh().clone(),
+        solver(settings.backend),
+        options(settings),
+        settings.tolerance,
+    )
+}
+
+/// Brings the study to the last of `levels` known levels that its checkpoint belongs to; returns how many that are.
+fn resume(study: &mut AdaptiveStudy, folder: &Path, levels: usize) -> Result<usize, StudyError> {
+    let file = File::open(folder.join(CHECKPOINT));
+    // Without a checkpoint, or with one that is broken or of other levels, the run starts anew.
+    let Ok(Ok(checkpoint)) = file.map(|file| read_checkpoint(BufReader::new(file))) else { return Ok(0) };
+    let known = checkpoint.marked.len() + 1;
+    Ok(if known <= levels && study.resume(checkpoint)? { known } else { 0 })
+}
+
+/// What the run may take.
+struct Limits {
+    tolerance: f64,
+    vertices: f64,
+    bytes: f64,
+    seconds: f64,
+    start: Instant,
+}
+
+impl Limits {
+    fn new(arguments: &AdaptArguments, start: Instant) -> Self {
+        let asked = arguments.memory_limit.map(|limit| limit * GIB);
+        Self {
+            tolerance: arguments.tolerance,
+            vertices: arguments.max_vertices as f64,
+            bytes: asked.or_else(memory::available).unwrap_or(f64::INFINITY),
+            seconds: arguments.time_limit.unwrap_or(f64::INFINITY),
+            start,
+        }
+    }
+
+    /// Whether to stop, judging from how the levels have grown.
+    fn stop(&self, levels: &[AdaptiveLevel]) -> Option<Stop> {
+        let last = levels.last()?;
+        if last.relative_bound.is_some_and(|relative| relative <= self.tolerance) {
+            return Some(Stop::Reached);
+        }
+        let growth = match levels {
+            [.., before, last] => last.vertices as f64 / before.vertices as f64,
+            _ => GROWTH,
+        };
+        let vertices = growth * last.vertices as f64;
+        let seconds = self.start.elapsed().as_secs_f64() + growth * (last.solve_seconds + last.bound_seconds);
+        if vertices > self.vertices {
+            Some(Stop::Vertices)
+        } else if BYTES_PER_VERTEX * vertices > self.bytes {
+            Some(Stop::Memory)
+        } else if seconds > self.seconds {
+            Some(Stop::Time)
+        } else {
+            None
+        }
+    }
+}
+
+fn stage(levels: &[AdaptiveLevel]) -> String {
+    match levels.last() {
+        None => "level 0".into(),
+        Some(last) => {
+            let vertices = grouped(last.vertices);
+            format!("level {}, after {} on {vertices} vertices", levels.len(), percent(last.relative_bound))
+        }
+    }
+}
+
+fn percent(relative: Option<f64>) -> String {
+    relative.map_or_else(|| "-".into(), |relative| format!("{:.2} %", 100.0 * relative))
+}
+
+/// The solution on the last mesh as `membranes solve` writes it, that mesh and the errors as pictures.
+fn write_results(
+    folder: &Path,
+    case: &CaseFile,
+    study: &AdaptiveStudy,
+    levels: &[AdaptiveLevel],
+) -> Result<(), Failure> {
+    let (Some((solution, bound)), Some(last)) = (study.solution(), levels.last()) else { return Ok(()) };
+    let failed = |name: &str, error: &dyn std::fmt::Display| Failure::Input(format!("{name}: {error}"));
+    let mesh = study.mesh();
+    let d = Discretization::new(study.problem(), mesh).map_err(|error| failed(&case.title, &error))?;
+    write_solution(folder, &case.title, &d, solution, bound)?;
+    let seconds = Seconds { bound: last.bound_seconds, ..Seconds::default() };
+    let summary = Summary::new(&case.title, &d, last.tolerance, Ok(solution), seconds, Some(bound));
+    write_file(&folder.join(SUMMARY), |out| summary.write(out))?;
+
+    let sub = SubTriangulation::new(mesh).map_err(|error| failed(MESH, &error))?;
+    let dual = DualMesh::new(mesh, &sub);
+    let picture = MeshPicture { title: &case.title, mesh, dual: &dual, contact: Some(solution.contact()) };
+    let png = render_mesh(&picture).map_err(|error| failed(MESH, &error))?;
+    write_file(&folder.join(MESH), |out| out.write_all(&png))?;
+
+    let png = render_rates(&RatesPicture {
+        title: &case.title,
+        abscissa: "vertices",
+        h: &levels.iter().map(|level| level.vertices as f64).collect::<Vec<_>>(),
+        series: &[
+            Series { name: "guaranteed bound", values: &values(levels, |level| Some(level.bound)) },
+            Series { name: "true error", values: &values(levels, |level| level.energy_error) },
+            Series { name: "residual estimator", values: &values(levels, |l| Some(l.residual_estimator)) },
+        ],
+        slopes: &OPTIMAL,
+    });
+    let png = png.map_err(|error| failed(PICTURE, &error))?;
+    write_file(&folder.join(PICTURE), |out| out.write_all(&png))
+}
+
+/// What is not known cannot be drawn.
+fn values(levels: &[AdaptiveLevel], of: impl Fn(&AdaptiveLevel) -> Option<f64>) -> Vec<f64> {
+    levels.iter().map(|level| of(level).unwrap_or(f64::NAN)).collect()
+}
+
+/// The history for the eye.
+fn table(title: &str, levels: &[AdaptiveLevel], folder: &Path) -> String {
+    let mut text =
+        format!("{title}\n  vertices    h min     bound  relative  effectivity  iterations  seconds\n");
+    for level in levels {
+        let effectivity = level.effectivity().map_or_else(|| "-".into(), |index| format!("{index:.2}"));
+        text += &format!(
+            "{:>10} {:>8.1e} {:>9.2e} {:>9} {effectivity:>12} {:>11} {:>8.2}\n",
+            grouped(level.vertices),
+            level.h_min,
+            level.bound,
+            percent(level.relative_bound),
+            level.iterations,
+            level.solve_seconds + level.bound_seconds,
+        );
+    }
+    // The first meshes may be too coarse to see anything of the solution.
+    let later = &levels[levels.len() / 2..];
+    if let Some(slope) = exponent(later.iter().map(|level| [level.vertices as f64, level.bound])) {
+        text += &format!("  the bound falls like vertices^{slope:.2} (later half; -0.50 is the best)\n");
+    }
+    let files = [SOLUTION, SUMMARY, MEMBRANES, TABLE, PICTURE, MESH].join(", ");
+    text + &format!("  files: {}/{{{files}}}\n", folder.display())
+}
+
+fn verdict(
+    name: &str,
+    arguments: &AdaptArguments,
+    stop: &Stop,
+    levels: &[AdaptiveLevel],
+) -> Result<(), Failure> {
+    let why = match stop {
+        Stop::Reached => return Ok(()),
+        Stop::Vertices => {
+            format!(
+                "the next mesh would exceed {} vertices (--max-vertices)",
+                grouped(arguments.max_vertices)
+            )
+        }
+        Stop::Time => "the next level would exceed the time limit (--time-limit)".into(),
+        Stop::Memory => "the next level would need more memory than there is (--memory-limit)".into(),
+        Stop::TooSmall(error) => error.to_string(),
+    };
+    let relative = percent(levels.last().and_then(|level| level.relative_bound));
+    let goal = percent(Some(arguments.tolerance));
+    Err(Failure::NotCertified(format!(
+        "{name}: stopped at a guaranteed relative error of {relative}, above {goal}: {why}; a run with a higher limit goes on from here"
+    )))
+}

@@ -1,0 +1,76 @@
+//! The levels of a study in the folder for results: a run that is stopped goes on from them.
+
+use std::io;
+use std::path::Path;
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use super::Failure;
+use super::args::CaseArguments;
+use super::case_file::BackendName;
+use super::setup::write_file;
+use crate::study::StudyError;
+
+const VERSION: &str = concat!("membranes ", env!("CARGO_PKG_VERSION"));
+
+/// The levels of a study, a row of a table for each, and what they belong to: a run of another case file, solver or first mesh
+/// starts anew.
+pub(super) struct Levels<'a> {
+    /// The folder.
+    pub(super) folder: &'a Path,
+    /// The name of the table.
+    pub(super) table: &'static str,
+    /// The name of the file that says what the levels belong to.
+    pub(super) origin: &'static str,
+}
+
+impl Levels<'_> {
+    /// The rows that an earlier run of the same origin has left; none when it was another one.
+    pub(super) fn so_far<T: DeserializeOwned>(&self, origin: &str) -> Result<Vec<T>, Failure> {
+        let table = self.folder.join(self.table);
+        let known = std::fs::read_to_string(self.folder.join(self.origin));
+        if known.is_ok_and(|text| text == origin)
+            && let Ok(mut reader) = csv::Reader::from_path(&table)
+        {
+            let rows: Result<Vec<T>, _> = reader.deserialize().collect();
+            // A table that is not ours, or of another version, is made anew.
+            return Ok(rows.unwrap_or_default());
+        }
+        // Levels of another origin go first: a run that is stopped here must not find them under the new one.
+        match std::fs::remove_file(&table) {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => {
+                return Err(Failure::Input(format!("{}: cannot remove: {error}", table.display())));
+            }
+            _ => {}
+        }
+        write_file(&self.folder.join(self.origin), |out| out.write_all(origin.as_bytes()))?;
+        Ok(Vec::new())
+    }
+
+    /// Writes all rows anew.
+    pub(super) fn write<T: Serialize>(&self, rows: &[T]) -> Result<(), Failure> {
+        write_file(&self.folder.join(self.table), |out| {
+            let mut writer = csv::Writer::from_writer(out);
+            rows.iter().try_for_each(|row| writer.serialize(row))?;
+            writer.flush()
+        })
+    }
+}
+
+/// What the levels of a run belong to.
+pub(super) fn origin(case: &CaseArguments, backend: BackendName, text: &str) -> String {
+    let backend = backend.as_str();
+    format!("# {VERSION}, solved by {backend}, refined {} times first\n{text}", case.refine)
+}
+
+/// Why a study of the case file `name` fails.
+pub(super) fn failure(name: &str, error: &StudyError) -> Failure {
+    let text = format!("{name}: {error}");
+    match error {
+        StudyError::Rejected { .. } | StudyError::Solver(_) | StudyError::Measure(_) => {
+            Failure::NotCertified(text)
+        }
+        _ => Failure::Input(text),
+    }
+}

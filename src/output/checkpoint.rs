@@ -1,0 +1,102 @@
+//! What an adaptive run goes on from, as a numpy archive.
+
+use std::io::{self, Read, Seek, Write};
+
+use zip::ZipArchive;
+
+use crate::qp::{NpzWriter, read_vector};
+use crate::study::Checkpoint;
+
+/// Writes a checkpoint. Arrays: `marked`, the marked triangles of all refinements one after the other, `marked_counts`, their
+/// numbers; `u1`, `u2`, `lambda` over the vertices of the last mesh; `tolerance`.
+///
+/// # Errors
+/// When writing fails.
+pub fn write_checkpoint(checkpoint: &Checkpoint, out: impl Write + Seek) -> io::Result<()> {
+    let Checkpoint { marked, displacement: [u1, u2], lambda, tolerance } = checkpoint;
+    let counts: Vec<usize> = marked.iter().map(Vec::len).collect();
+    let marked = marked.concat();
+    let mut archive = NpzWriter::new(out);
+    archive.integers("marked_counts", &counts, &[counts.len()])?;
+    archive.integers("marked", &marked, &[marked.len()])?;
+    for (name, values) in [("u1", u1), ("u2", u2), ("lambda", lambda)] {
+        archive.floats(name, values, &[values.len()])?;
+    }
+    archive.floats("tolerance", &[*tolerance], &[1])?;
+    archive.finish()
+}
+
+/// Reads a checkpoint. Whether it belongs to a study is for [`AdaptiveStudy::resume`](crate::study::AdaptiveStudy::resume) to
+/// say.
+///
+/// # Errors
+/// When it is no such archive, or an array is missing or broken.
+pub fn read_checkpoint(input: impl Read + Seek) -> io::Result<Checkpoint> {
+    let mut archive = ZipArchive::new(input).map_err(io::Error::other)?;
+    let mut indices = |name: &str| -> io::Result<Vec<usize>> {
+        let numbers: Vec<i64> = read_vector(&mut archive, name)?;
+        numbers.into_iter().map(|number| usize::try_from(number).map_err(io::Error::other)).collect()
+    };
+    let (counts, marked) = (indices("marked_counts")?, indices("marked")?);
+    let mut rest = marked.as_slice();
+    let mut split = |&count: &usize| {
+        let (first, others) = rest.split_at_checked(count)?;
+        rest = others;
+        Some(first.to_vec())
+    };
+    let marked: Option<Vec<Vec<usize>>> = counts.iter().map(&mut split).collect();
+    let marked = marked.ok_or_else(|| io::Error::other("fewer marked triangles than counted"))?;
+    let displacement = [read_vector(&mut archive, "u1")?, read_vector(&mut archive, "u2")?];
+    let lambda = read_vector(&mut archive, "lambda")?;
+    let tolerance: Vec<f64> = read_vector(&mut archive, "tolerance")?;
+    let &[tolerance] = tolerance.as_slice() else {
+        return Err(io::Error::other("`tolerance` is not one number"));
+    };
+    Ok(Checkpoint { marked, displacement, lambda, tolerance })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Cursor;
+
+    use super::*;
+
+    fn checkpoint() -> Checkpoint {
+        Checkpoint {
+            marked: vec![vec![3, 1], vec![], vec![7]],
+            displacement: [vec![0.1, -2.0], vec![f64::MIN_POSITIVE, 1.0 / 3.0]],
+            lambda: vec![0.0, 1e300],
+            tolerance: 1e-8,
+        }
+    }
+
+    fn written(checkpoint: &Checkpoint) -> Vec<u8> {
+        let mut file = Cursor::new(Vec::new());
+        write_checkpoint(checkpoint, &mut file).unwrap();
+        file.into_inner()
+    }
+
+    #[test]
+    fn what_is_read_is_what_was_written_to_the_last_bit() {
+        let bytes = written(&checkpoint());
+        assert_eq!(read_checkpoint(Cursor::new(&bytes)).unwrap(), checkpoint());
+        assert_eq!(written(&checkpoint()), bytes, "the same bytes each time");
+        let other = Checkpoint { tolerance: 1e-9, ..checkpoint() };
+        assert_ne!(read_checkpoint(Cursor::new(written(&other))).unwrap(), checkpoint());
+    }
+
+    #[test]
+    fn what_is_broken_is_an_error() {
+        let bytes = written(&checkpoint());
+        for length in 0..bytes.len() {
+            assert!(read_checkpoint(Cursor::new(&bytes[..length])).is_err(), "{length} bytes");
+        }
+        let mut file = Cursor::new(Vec::new());
+        let mut archive = NpzWriter::new(&mut file);
+        archive.integers("marked_counts", &[5], &[1]).unwrap();
+        archive.integers("marked", &[1, 2], &[2]).unwrap();
+        archive.finish().unwrap();
+        let error = read_checkpoint(file).unwrap_err();
+        assert!(error.to_string().contains("fewer"), "{error}");
+    }
+}

@@ -1,0 +1,154 @@
+//! A certified solution together with the bound of its error.
+
+use std::time::Instant;
+
+use thiserror::Error;
+
+use super::prolongation::Fields;
+use crate::action::{ContactSolution, Rejected, certify};
+use crate::discretization::Discretization;
+use crate::error::{ErrorBound, MeasureError};
+use crate::problem::{ContactProblem, Domain};
+use crate::solver::{ContactSolver, SolverError, SolverOptions};
+
+/// Where the tolerance that follows the discretisation starts.
+const LOOSEST: f64 = 1e-3;
+
+/// And where it ends: below, residuals are rounding.
+const TIGHTEST: f64 = 1e-12;
+
+/// What the solver leaves may be this fraction of the discretisation error.
+const FRACTION: f64 = 0.02;
+
+/// How accurately to solve.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Tolerance {
+    /// To this largest relative residual.
+    Fixed(f64),
+    /// Until what the solver leaves of the error bound is a small fraction of what the mesh leaves.
+    Auto,
+}
+
+impl Tolerance {
+    /// The number, where there must be one: for [`Tolerance::Auto`] that of [`SolverOptions::default`].
+    pub fn or_default(self) -> f64 {
+        match self {
+            Self::Fixed(tolerance) => tolerance,
+            Self::Auto => SolverOptions::default().tolerance,
+        }
+    }
+}
+
+/// A certified solution and how far it is from the exact one.
+#[derive(Debug, Clone)]
+pub struct Bounded {
+    /// The solution.
+    pub solution: ContactSolution,
+    /// The bound of its energy error.
+    pub bound: ErrorBound,
+    /// The tolerance within which it is certified.
+    pub tolerance: f64,
+    /// Seconds that the bound took.
+    pub bound_seconds: f64,
+}
+
+/// There is no certified solution with a bound.
+#[derive(Debug, Error)]
+pub enum AccuracyError {
+    /// The solver cannot run.
+    #[error(transparent)]
+    Solver(#[from] SolverError),
+    /// Its result is not certified.
+    #[error("{0}")]
+    Rejected(Box<Rejected>, f64),
+    /// The error cannot be bounded.
+    #[error(transparent)]
+    Measure(#[from] MeasureError),
+}
+
+/// Solves `d`, the discretization of `problem`, certifies the result and bounds its error. `options.tolerance` is not used.
+///
+/// # Errors
+/// [`AccuracyError`]; a rejected result comes with the tolerance that it misses.
+pub fn solve_bounded(
+    problem: &ContactProblem,
+    domain: Option<&Domain>,
+    d: &Discretization,
+    solver: &mut dyn ContactSolver,
+    options: &SolverOptions,
+    tolerance: Tolerance,
+) -> Result<Bounded, AccuracyError> {
+    let at = |tolerance: f64, solver: &mut dyn ContactSolver, options: &SolverOptions| {
+        let candidate = solver.solve(d, &SolverOptions { tolerance, ..options.clone() })?;
+        let solution = certify(d, candidate, tolerance)
+            .map_err(|rejected| AccuracyError::Rejected(rejected, tolerance))?;
+        let start = Instant::now();
+        let bound = ErrorBound::new(problem, domain, d, solution.displacement())?;
+        Ok(Bounded { solution, bound, tolerance, bound_seconds: start.elapsed().as_secs_f64() })
+    };
+    let Tolerance::Fixed(tolerance) = tolerance else {
+        let mut bounded = at(LOOSEST, solver, options)?;
+        while let Some(tighter) = bounded.tighter() {
+            let warm_start = Some(Fields::from(&bounded.solution).into_start(d));
+            // What cannot be had more accurately is certified as it is.
+            match at(tighter, solver, &SolverOptions { warm_start, ..options.clone() }) {
+                Ok(better) => bounded = better,
+                Err(AccuracyError::Rejected(..)) => break,
+                Err(error) => return Err(error),
+            }
+        }
+        return Ok(bounded);
+    };
+    at(tolerance, solver, options)
+}
+
+impl Bounded {
+    /// The tolerance with which the solver would leave a small fraction; `None` when it leaves no more already.
+    fn tighter(&self) -> Option<f64> {
+        let allowed = FRACTION * self.bound.parts.discretization();
+        if self.bound.parts.algebraic <= allowed || self.tolerance <= TIGHTEST {
+            return None;
+        }
+        // What the solver leaves is about proportional to the tolerance.
+        let proportional = 0.5 * self.tolerance * allowed / self.bound.parts.algebraic;
+        Some(proportional.clamp(TIGHTEST, 0.1 * self.tolerance))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::{Pattern, rectangle};
+    use crate::qp::Clarabel;
+    use crate::solver::{Multigrid, QpSolver};
+
+    fn solve(solver: &mut dyn ContactSolver, tolerance: Tolerance) -> Bounded {
+        let problem =
+            ContactProblem::builder().tension(1.0, 3.0).load(-15.0, 10.0).height(0.1).build().unwrap();
+        let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [64, 64], Pattern::Right).unwrap();
+        let d = Discretization::new(&problem, &mesh).unwrap();
+        let options = SolverOptions { polish: false, ..SolverOptions::default() };
+        solve_bounded(&problem, None, &d, solver, &options, tolerance).unwrap()
+    }
+
+    #[test]
+    fn the_solver_stops_where_its_error_is_a_small_fraction() {
+        let solvers: [Box<dyn ContactSolver>; 2] = [Box::new(Multigrid), Box::new(QpSolver::new(Clarabel))];
+        for mut solver in solvers {
+            let auto = solve(&mut *solver, Tolerance::Auto);
+            let fraction = auto.bound.parts.algebraic / auto.bound.parts.discretization();
+            assert!(fraction <= FRACTION, "{}: {fraction}", solver.name());
+            assert!(
+                auto.tolerance > 1e-8,
+                "{}: no more accurate than needed: {:e}",
+                solver.name(),
+                auto.tolerance
+            );
+            let tight = solve(&mut *solver, Tolerance::Fixed(1e-10));
+            assert!((auto.bound.total / tight.bound.total - 1.0).abs() < 2.0 * FRACTION, "the same bound");
+        }
+        // The twin: as loose as it starts, the solver leaves more than that.
+        let loose = solve(&mut QpSolver::new(Clarabel), Tolerance::Fixed(LOOSEST));
+        assert!(loose.tighter().is_some_and(|tolerance| tolerance < LOOSEST));
+    }
+}

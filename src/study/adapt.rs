@@ -1,0 +1,247 @@
+//! Meshes that are refined where the error is.
+
+use std::time::Instant;
+
+use serde::{Deserialize, Serialize};
+
+use super::accuracy::{Bounded, Tolerance, solve_bounded};
+use super::prolongation::Fields;
+use super::{StudyError, mark};
+use crate::action::{ContactSolution, certify};
+use crate::discretization::Discretization;
+use crate::error::{ErrorBound, ErrorNorms, residual_indicators};
+use crate::mesh::{Bisection, Mesh};
+use crate::problem::{ContactProblem, Domain, ExactSolution};
+use crate::qp::Status;
+use crate::solver::{Candidate, ContactSolver, SolverOptions, Statistics};
+
+/// The fraction of the squared error in the triangles that are marked.
+const FRACTION: f64 = 0.5;
+
+/// Solves on meshes that are bisected where the indicators of the guaranteed bound are largest.
+///
+/// Each level starts from the solution of the one before; the bisections are the hierarchy of the multigrid solver.
+pub struct AdaptiveStudy {
+    problem: ContactProblem,
+    domain: Option<Domain>,
+    exact: Option<ExactSolution>,
+    bisection: Bisection,
+    solver: Box<dyn ContactSolver>,
+    options: SolverOptions,
+    tolerance: Tolerance,
+    marked: Vec<Vec<usize>>,
+    last: Option<Solved>,
+}
+
+/// The solution on the current mesh.
+struct Solved {
+    solution: ContactSolution,
+    bound: ErrorBound,
+    tolerance: f64,
+}
+
+/// One level: a mesh and the error on it. Written as a row of `adapt.csv`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct AdaptiveLevel {
+    /// The number of the level, from 0.
+    pub level: usize,
+    /// Vertices of the mesh.
+    pub vertices: usize,
+    /// Triangles of the mesh.
+    pub triangles: usize,
+    /// The longest edge.
+    pub h: f64,
+    /// The shortest edge.
+    pub h_min: f64,
+    /// The smallest angle, degrees.
+    pub min_angle: f64,
+    /// The guaranteed bound of the energy error.
+    pub bound: f64,
+    /// The bound relative to the exact solution's energy norm; empty when the bound is too large to know that.
+    pub relative_bound: Option<f64>,
+    /// The parts of the bound, see [`BoundParts`](crate::error::BoundParts).
+    pub flux: f64,
+    /// Likewise.
+    pub oscillation: f64,
+    /// Likewise.
+    pub contact: f64,
+    /// Likewise.
+    pub boundary: f64,
+    /// Likewise.
+    pub algebraic: f64,
+    /// The residual estimator, see [`residual_indicators`].
+    pub residual_estimator: f64,
+    /// `|||u_h|||`.
+    pub energy_norm: f64,
+    /// The energy error; empty where no exact solution is known.
+    pub energy_error: Option<f64>,
+    /// The tolerance within which the solution is certified.
+    pub tolerance: f64,
+    /// Iterations of the solver.
+    pub iterations: usize,
+    /// Seconds for mesh, assembly and solution.
+    pub solve_seconds: f64,
+    /// Seconds for the bound.
+    pub bound_seconds: f64,
+}
+
+impl AdaptiveLevel {
+    /// The bound over the energy error, where that is known.
+    pub fn effectivity(&self) -> Option<f64> {
+        self.energy_error.map(|error| self.bound / error)
+    }
+}
+
+/// What a study goes on from: the marked triangles of all refinements so far, and the solution on the last mesh.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Checkpoint {
+    /// Of each refinement the triangles that were marked.
+    pub marked: Vec<Vec<usize>>,
+    /// `[u1, u2]` over vertices.
+    pub displacement: [Vec<f64>; 2],
+    /// `lambda_h` over vertices.
+    pub lambda: Vec<f64>,
+    /// The tolerance within which they are certified.
+    pub tolerance: f64,
+}
+
+impl AdaptiveStudy {
+    /// A study that starts on `mesh`. `domain` is what the mesh stands for (see [`ErrorBound::new`]); with the exact solution,
+    /// true errors are measured as well.
+    pub fn new(
+        problem: ContactProblem,
+        domain: Option<Domain>,
+        exact: Option<ExactSolution>,
+        mesh: Mesh,
+        solver: Box<dyn ContactSolver>,
+        options: SolverOptions,
+        tolerance: Tolerance,
+    ) -> Self {
+        let bisection = match &domain {
+            Some(domain) => Bisection::of_domain(mesh, domain),
+            None => Bisection::new(mesh),
+        };
+        Self { problem, domain, exact, bisection, solver, options, tolerance, marked: Vec::new(), last: None }
+    }
+
+    /// The current mesh.
+    pub fn mesh(&self) -> &Mesh {
+        self.bisection.mesh()
+    }
+
+    /// The problem.
+    pub fn problem(&self) -> &ContactProblem {
+        &self.problem
+    }
+
+    /// The solution on the current mesh and its bound, once there is one.
+    pub fn solution(&self) -> Option<(&ContactSolution, &ErrorBound)> {
+        self.last.as_ref().map(|last| (&last.solution, &last.bound))
+    }
+
+    /// Refines where the error of the last level is (but for the first level), solves and bounds the error.
+    ///
+    /// # Errors
+    /// [`StudyError`]; when the mesh cannot be refined further, the last level stays, and it is lost for every other reason.
+    pub fn next_level(&mut self) -> Result<AdaptiveLevel, StudyError> {
+        let start = Instant::now();
+        let prolonged = match &self.last {
+            None => None,
+            Some(last) => {
+                let marked = mark(&last.bound.indicators, FRACTION);
+                let parents = self.bisection.refine(&marked)?;
+                self.marked.push(marked);
+                Some(Fields::from(&last.solution).prolonged(&parents))
+            }
+        };
+        self.last = None;
+        let level = self.marked.len();
+        let d = Discretization::new(&self.problem, self.bisection.mesh())?;
+        let warm_start = prolonged.map(|fields| fields.into_start(&d));
+        let options = SolverOptions { warm_start, ..self.options.clone() };
+        let domain = self.domain.as_ref();
+        let bounded = solve_bounded(&self.problem, domain, &d, &mut *self.solver, &options, self.tolerance)
+            .map_err(|error| StudyError::at(level, error))?;
+        let seconds = start.elapsed().as_secs_f64();
+        let row = self.row(&d, &bounded, seconds)?;
+        let Bounded { solution, bound, tolerance, .. } = bounded;
+        self.last = Some(Solved { solution, bound, tolerance });
+        Ok(row)
+    }
+
+    fn row(
+        &self,
+        d: &Discretization,
+        bounded: &Bounded,
+        solve_seconds: f64,
+    ) -> Result<AdaptiveLevel, StudyError> {
+        let Bounded { solution, bound, tolerance, bound_seconds } = bounded;
+        let residuals = residual_indicators(&self.problem, d, solution.displacement(), solution.lambda())?;
+        let norms = self.exact.as_ref().map(|exact| ErrorNorms::new(d, solution, exact)).transpose()?;
+        let quality = d.mesh().quality();
+        let parts = bound.parts;
+        Ok(AdaptiveLevel {
+            level: self.marked.len(),
+            vertices: d.mesh().points().len(),
+            triangles: d.mesh().triangles().len(),
+            h: quality.h_max,
+            h_min: quality.h_min,
+            min_angle: quality.min_angle,
+            bound: bound.total,
+            relative_bound: bound.relative(),
+            flux: parts.flux,
+            oscillation: parts.oscillation,
+            contact: parts.contact,
+            boundary: parts.boundary,
+            algebraic: parts.algebraic,
+            residual_estimator: residuals.iter().sum::<f64>().sqrt(),
+            energy_norm: bound.energy_norm,
+            energy_error: norms.map(|norms| norms.energy),
+            tolerance: *tolerance,
+            iterations: solution.statistics().iterations,
+            solve_seconds: solve_seconds - bound_seconds,
+            bound_seconds: *bound_seconds,
+        })
+    }
+
+    /// What a later run goes on from; `None` before the first level.
+    pub fn checkpoint(&self) -> Option<Checkpoint> {
+        self.last.as_ref().map(|last| Checkpoint {
+            marked: self.marked.clone(),
+            displacement: last.solution.displacement().clone(),
+            lambda: last.solution.lambda().to_vec(),
+            tolerance: last.tolerance,
+        })
+    }
+
+    /// Goes on from a checkpoint: bisects the first mesh again and has the solution certified again. Returns whether it is one
+    /// of this study; if not, the study is as it was.
+    ///
+    /// # Errors
+    /// [`StudyError`] when the problem cannot be posed on the mesh.
+    pub fn resume(&mut self, checkpoint: Checkpoint) -> Result<bool, StudyError> {
+        let Checkpoint { marked, displacement, lambda, tolerance } = checkpoint;
+        let mut bisection = self.bisection.clone();
+        for marked in &marked {
+            let triangles = bisection.mesh().triangles().len();
+            if marked.iter().any(|&t| t >= triangles) || bisection.refine(marked).is_err() {
+                return Ok(false);
+            }
+        }
+        let d = Discretization::new(&self.problem, bisection.mesh())?;
+        let vertices = bisection.mesh().points().len();
+        if displacement.iter().chain([&lambda]).any(|values| values.len() != vertices) {
+            return Ok(false);
+        }
+        let multiplier = d.interior().iter().map(|&a| lambda[a] * d.dual_area()[a]).collect();
+        let statistics = Statistics { status: Status::Unknown, ..Statistics::of(self.solver.name()) };
+        let Ok(solution) = certify(&d, Candidate { displacement, multiplier, statistics }, tolerance) else {
+            return Ok(false);
+        };
+        let bound = ErrorBound::new(&self.problem, self.domain.as_ref(), &d, solution.displacement())?;
+        self.last = Some(Solved { solution, bound, tolerance });
+        self.marked = marked;
+        self.bisection = bisection;
+        Ok(true)
+    }
+}
