@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use sprs::CsMat;
 use thiserror::Error;
 
-use crate::fem::{NotFinite, load_around, stiffness_around};
+use crate::fem::{LoadMoments, NotFinite, stiffness_around};
 use crate::mesh::{Mesh, VertexKind, VertexTriangles};
 use crate::problem::ContactProblem;
 
@@ -25,6 +25,7 @@ pub struct Discretization<'m> {
     pub(crate) stiffness: CsMat<f64>,
     pub(crate) interior_stiffness: CsMat<f64>,
     pub(crate) load: [Vec<f64>; 2],
+    pub(crate) moments: [LoadMoments; 2],
     pub(crate) height: Vec<f64>,
     pub(crate) interior: Vec<usize>,
     pub(crate) dual_area: Vec<f64>,
@@ -53,11 +54,12 @@ impl<'m> Discretization<'m> {
     /// boundary vertex, or tensions, loads or displacements are so large or small that energies would overflow.
     pub fn new(problem: &ContactProblem, mesh: &'m Mesh) -> Result<Self, DiscretizationError> {
         let around = VertexTriangles::new(mesh.points().len(), mesh.triangles());
-        let load_of = |i: usize| {
-            load_around(mesh, &around, &problem.load()[i])
+        let moments_of = |i: usize| {
+            LoadMoments::new(mesh, &problem.load()[i])
                 .map_err(|source| DiscretizationError::Load { membrane: i + 1, source })
         };
-        let load = [load_of(0)?, load_of(1)?];
+        let moments = [moments_of(0)?, moments_of(1)?];
+        let load = [0, 1].map(|i: usize| moments[i].vector(mesh, &around));
         let height = boundary_height(problem, mesh)?;
         let stiffness = stiffness_around(mesh, &around);
         // |D_a| = |Delta_a| / 3 (4.17)
@@ -74,6 +76,7 @@ impl<'m> Discretization<'m> {
             interior_stiffness: principal_submatrix(&stiffness, &interior),
             stiffness,
             load,
+            moments,
             height,
             interior,
             dual_area,

@@ -10,12 +10,11 @@ mod tests;
 
 pub use bound::{BoundParts, ErrorBound};
 pub use lift::DualNorm;
-pub use norms::{ContactAreas, ErrorNorms};
+pub use norms::{ContactAreas, ErrorNorms, energy_error};
 pub use residual::residual_indicators;
 
 use thiserror::Error;
 
-use crate::fem::NotFinite;
 use crate::mesh::MeshError;
 
 /// The error of a solution cannot be measured.
@@ -31,9 +30,6 @@ pub enum MeasureError {
         /// Vertices of the mesh.
         vertices: usize,
     },
-    /// A load is not finite.
-    #[error("a load {0}: it must be finite on the whole domain")]
-    Load(#[from] NotFinite),
     /// The triangles are too small to be divided.
     #[error("the triangles cannot be divided for the lift of the action: {0}")]
     SubTriangulation(#[from] MeshError),

@@ -4,6 +4,7 @@ mod cut;
 mod element;
 mod load;
 mod means;
+mod moments;
 mod quadrature;
 mod stiffness;
 
@@ -14,5 +15,5 @@ pub use stiffness::stiffness;
 
 pub(crate) use cut::CutRule;
 pub(crate) use element::{gradient, local_stiffness};
-pub(crate) use load::{ElementMoments, element_moments, load_around};
+pub(crate) use moments::{ElementMoments, LoadMoments};
 pub(crate) use stiffness::stiffness_around;

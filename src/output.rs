@@ -16,7 +16,7 @@ pub use checkpoint::{read_checkpoint, write_checkpoint};
 pub use dual::write_dual_vtu;
 pub use file::{WriteSeek, write_atomically};
 pub use flux::write_flux_vtu;
-pub use mesh_picture::{MeshPicture, MeshPictureError, render_mesh};
+pub use mesh_picture::{MeshPicture, MeshPictureError, render_mesh, render_triangulation};
 pub use rates_picture::{
     RatesPicture, RatesPictureError, Series, Times, TimesPicture, render_rates, render_times,
 };

@@ -16,7 +16,7 @@ use super::{CaseFile, Failure};
 use crate::discretization::Discretization;
 use crate::mesh::{DualMesh, MeshError, SubTriangulation};
 use crate::output::{
-    MeshPicture, RatesPicture, Seconds, Series, Summary, read_checkpoint, render_mesh, render_rates,
+    MeshPicture, RatesPicture, Seconds, Series, Summary, read_checkpoint, render_rates, render_triangulation,
     write_checkpoint,
 };
 use crate::study::{AdaptiveLevel, AdaptiveStudy, StudyError, exponent};
@@ -189,7 +189,7 @@ fn write_results(
     let sub = SubTriangulation::new(mesh).map_err(|error| failed(MESH, &error))?;
     let dual = DualMesh::new(mesh, &sub);
     let picture = MeshPicture { title: &case.title, mesh, dual: &dual, contact: Some(solution.contact()) };
-    let png = render_mesh(&picture).map_err(|error| failed(MESH, &error))?;
+    let png = render_triangulation(&picture).map_err(|error| failed(MESH, &error))?;
     write_file(&folder.join(MESH), |out| out.write_all(&png))?;
 
     let png = render_rates(&RatesPicture {

@@ -29,7 +29,6 @@ use trace::Trace;
 use super::MeasureError;
 use crate::action::Action;
 use crate::discretization::Discretization;
-use crate::fem::element_moments;
 use crate::flux::WedgeFluxes;
 use crate::mesh::{VertexKind, VertexTriangles};
 use crate::problem::{ContactProblem, Domain};
@@ -46,6 +45,9 @@ pub struct ErrorBound {
     pub energy_norm: f64,
     /// Where it comes from.
     pub parts: BoundParts,
+    /// The action `lt` of the bound, on the dual cells: `lambda_h` where the membranes touch, and on the cells of the boundary, where
+    /// `lambda_h` is zero, that of the neighbours if they touch all around. Shape: `vertices`; unit: force per area.
+    pub action: Vec<f64>,
     /// The squared indicators `sum_i (a_{K,i} + b_{K,i})^2 + 2 a_{K,i} b_{K,i} + 2 (lt, w^)_K`: with `alpha_i = 0`, their sum is the
     /// square of the bound. Shape: `triangles`.
     pub indicators: Vec<f64>,
@@ -94,7 +96,7 @@ impl ErrorBound {
     /// counts as the domain.
     ///
     /// # Errors
-    /// [`MeasureError`] when the displacements are not over the vertices, or a load is not finite.
+    /// [`MeasureError::OtherMesh`] when the displacements are not over the vertices.
     pub fn new(
         problem: &ContactProblem,
         domain: Option<&Domain>,
@@ -105,22 +107,19 @@ impl ErrorBound {
         if let Some(u) = displacement.iter().find(|u| u.len() != vertices) {
             return Err(MeasureError::OtherMesh { values: u.len(), vertices });
         }
-        let moments = [0, 1].map(|i| element_moments(d.mesh(), &problem.load()[i]));
-        let [first, second] = moments;
-        let moments = [first?, second?];
-        let load = [moments[0].as_slice(), moments[1].as_slice()];
         let around = VertexTriangles::new(vertices, d.mesh().triangles());
         let push = Push::new(d, displacement, &around);
         let cells = Cells {
             d,
             displacement,
             lambda: &push.lambda,
-            load,
-            fluxes: WedgeFluxes::new(d, &around, displacement, load, &push.lambda),
+            fluxes: WedgeFluxes::new(d, &around, displacement, &push.lambda),
             trace: Trace::new(problem, domain, d, &around),
         };
         let (sums, indicators) = cells.sum();
-        Ok(Self::from_sums(d, &sums, friedrichs(d, domain), push.rest_sq, indicators))
+        drop(cells);
+        let Push { lambda, rest_sq } = push;
+        Ok(Self::from_sums(d, &sums, friedrichs(d, domain), rest_sq, lambda, indicators))
     }
 
     fn from_sums(
@@ -128,6 +127,7 @@ impl ErrorBound {
         sums: &Sums,
         friedrichs: f64,
         rest_sq: [f64; 2],
+        action: Vec<f64>,
         indicators: Vec<f64>,
     ) -> Self {
         let rest = [0, 1].map(|i| friedrichs * (rest_sq[i] / d.tension()[i]).sqrt());
@@ -146,6 +146,7 @@ impl ErrorBound {
                 boundary: sums.boundary_sq.sqrt(),
                 algebraic: rest[0].hypot(rest[1]) + (2.0 * sums.overlap).sqrt() + sums.mended_sq.sqrt(),
             },
+            action,
             indicators,
         }
     }

@@ -37,7 +37,8 @@ impl CutRule {
 
     /// Whether the rule on this triangle does not depend on the depth.
     pub(crate) fn is_plain(&self, triangle: Triangle) -> bool {
-        !self.crosses(triangle) && !self.has_corner_near(triangle)
+        let is_smooth = self.interfaces.is_empty() && self.corner.is_none();
+        is_smooth || !(self.crosses(triangle) || self.has_corner_near(triangle))
     }
 
     /// Calls `visit(point, weight)` for the points of the rule; the weights sum to the area of the triangle.

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::field::through;
 use super::reconstruct::flux_on;
 use crate::discretization::Discretization;
-use crate::fem::ElementMoments;
+use crate::fem::LoadMoments;
 use crate::mesh::{Mesh, VertexTriangles};
 
 /// Vertices that are worked on together.
@@ -27,10 +27,17 @@ pub(crate) struct WedgeFluxes<'a> {
 struct Data<'a> {
     mesh: &'a Mesh,
     around: &'a VertexTriangles,
-    tension: [f64; 2],
-    displacement: &'a [Vec<f64>; 2],
-    load: [&'a [ElementMoments]; 2],
+    load: &'a [LoadMoments; 2],
     lambda: &'a [f64],
+    elements: Vec<Element>,
+}
+
+/// A triangle.
+#[derive(Debug, Clone, Copy)]
+struct Element {
+    area: f64,
+    /// `-mu_i grad u_ih`.
+    flux: [[f64; 2]; 2],
 }
 
 /// `t_ih + mu_i grad u_ih` on a wedge, as fluxes: what enters through the half edge that comes first counterclockwise
@@ -75,8 +82,6 @@ struct Wedge {
     /// The corner of the triangle after the vertex, and the one before.
     next: usize,
     last: usize,
-    /// Its place in the row of the vertex.
-    place: usize,
     area: f64,
     load: [f64; 2],
     flux: [[f64; 2]; 2],
@@ -86,19 +91,24 @@ struct Wedge {
 }
 
 impl<'a> WedgeFluxes<'a> {
-    /// For the displacements `[u1, u2]` over vertices; `load` are the moments of both loads, `around` the triangles around the
+    /// For the displacements `[u1, u2]` over vertices; `around` are the triangles around the
     /// vertices of the mesh of `d`. Around an interior vertex the action follows from the balance; on the dual cell of a boundary vertex
     /// it may be chosen, and is that of `lambda`, over vertices.
     pub(crate) fn new(
         d: &'a Discretization,
         around: &'a VertexTriangles,
-        displacement: &'a [Vec<f64>; 2],
-        load: [&'a [ElementMoments]; 2],
+        displacement: &[Vec<f64>; 2],
         lambda: &'a [f64],
     ) -> Self {
-        let data = Data { mesh: d.mesh(), around, tension: d.tension(), displacement, load, lambda };
-        let vertices = d.mesh().points().len();
-        let mut changes = vec![[Change::default(); 2]; 3 * d.mesh().triangles().len()];
+        let mesh = d.mesh();
+        let element = |k: usize| Element {
+            area: mesh.triangle_area(k),
+            flux: [0, 1].map(|i| flux_on(mesh, k, d.tension()[i], &displacement[i])),
+        };
+        let elements = (0..mesh.triangles().len()).into_par_iter().with_min_len(BLOCK).map(element).collect();
+        let data = Data { mesh, around, load: &d.moments, lambda, elements };
+        let vertices = mesh.points().len();
+        let mut changes = vec![[Change::default(); 2]; 3 * mesh.triangles().len()];
         let mut rest = changes.as_mut_slice();
         let mut blocks = Vec::with_capacity(vertices.div_ceil(BLOCK));
         for first in (0..vertices).step_by(BLOCK) {
@@ -120,7 +130,7 @@ impl<'a> WedgeFluxes<'a> {
 
     /// `int_K |t_ih + mu_i grad u_ih|^2` for both membranes.
     pub(crate) fn distance_sq(&self, k: usize) -> [f64; 2] {
-        let (corners, area) = (self.data.mesh.corners(k), self.data.mesh.triangle_area(k));
+        let (corners, area) = (self.data.mesh.corners(k), self.data.elements[k].area);
         let mut sum = [0.0; 2];
         for corner in 0..3 {
             let products = Products::new([0, 1, 2].map(|j| corners[(corner + j) % 3]), area);
@@ -134,7 +144,7 @@ impl<'a> WedgeFluxes<'a> {
     /// on the boundary: the half at this corner, then that at the next. Unit: force.
     pub(crate) fn boundary_outward(&self, membrane: usize, k: usize, corner: usize) -> [f64; 2] {
         let corners = self.data.mesh.corners(k);
-        let q = self.data.discrete_flux(k)[membrane];
+        let q = self.data.elements[k].flux[membrane];
         let half = 0.5 * through(q, corners[corner], corners[(corner + 1) % 3]);
         let (first, last) = (self.change(k, corner)[membrane], self.change(k, (corner + 1) % 3)[membrane]);
         [half - first.entering, half + last.entering + last.source]
@@ -151,59 +161,59 @@ impl Data<'_> {
     /// The changes around one vertex, written to its row.
     fn of_vertex(&self, a: usize, patch: &mut Patch, row: &mut [[Change; 2]]) {
         patch.wedges.clear();
-        let triangles = self.around.of(a).iter().enumerate();
-        patch.wedges.extend(triangles.map(|(place, &k)| self.wedge(a, k, place)));
-        patch.fans(|fan, closed| {
+        patch.wedges.extend(self.around.of(a).iter().map(|&k| self.wedge(a, k)));
+        patch.fans(|wedges, fan, closed| {
             for (membrane, sign) in [1.0, -1.0].into_iter().enumerate() {
                 let action = (!closed).then_some(sign * self.lambda[a]);
-                equilibrate(fan, action, membrane, row);
+                equilibrate(wedges, fan, action, membrane, row);
             }
         });
     }
 
-    fn wedge(&self, a: usize, k: usize, place: usize) -> Wedge {
+    fn wedge(&self, a: usize, k: usize) -> Wedge {
         let triangle = self.mesh.triangles()[k];
         let corner = triangle.iter().position(|&b| b == a).expect("a is a corner of the triangles around it");
         let [next, last] = [1, 2].map(|j| triangle[(corner + j) % 3]);
         let [p, q, r] = [a, next, last].map(|b| self.mesh.points()[b]);
-        let area = self.mesh.triangle_area(k);
+        let Element { area, flux } = self.elements[k];
         Wedge {
             next,
             last,
-            place,
             area: area / 3.0,
-            load: self.load.map(|load| load[k].integrals[corner]),
-            flux: self.discrete_flux(k),
+            load: [0, 1].map(|i: usize| self.load[i].on(self.mesh, k).integrals[corner]),
+            flux,
             spoke: [[0.5 * (p[0] + r[0]), 0.5 * (p[1] + r[1])], p],
             products: Products::new([p, q, r], area),
         }
-    }
-
-    /// `-mu_i grad u_ih` on triangle `k`.
-    fn discrete_flux(&self, k: usize) -> [[f64; 2]; 2] {
-        [0, 1].map(|i| flux_on(self.mesh, k, self.tension[i], &self.displacement[i]))
     }
 }
 
 /// Memory for the wedges around a vertex.
 #[derive(Default)]
 struct Patch {
-    /// In the order of `next`, by which successors are found.
+    /// In the order of the triangles around the vertex.
     wedges: Vec<Wedge>,
+    /// The corner after the vertex and the number of the wedge, sorted: so successors are found.
+    by_next: Vec<(usize, usize)>,
     is_first: Vec<bool>,
     seen: Vec<bool>,
     /// One fan, counterclockwise.
-    fan: Vec<Wedge>,
+    fan: Vec<usize>,
 }
 
 impl Patch {
-    /// Calls `each(fan, closed)` for the fans of a vertex: one that closes around an interior vertex, one for each sector of
-    /// the domain at a boundary vertex.
-    fn fans(&mut self, mut each: impl FnMut(&[Wedge], bool)) {
-        let Self { wedges, is_first, seen, fan } = self;
-        // Small rows are sorted by insertion.
-        wedges.sort_unstable_by_key(|wedge| wedge.next);
-        let following = |k: usize| wedges.binary_search_by_key(&wedges[k].last, |wedge| wedge.next).ok();
+    /// Calls `each(wedges, fan, closed)` for the fans of a vertex: one that closes around an interior vertex, one for each sector of
+    /// the domain at a boundary vertex. A fan is given by the numbers of its wedges.
+    fn fans(&mut self, mut each: impl FnMut(&[Wedge], &[usize], bool)) {
+        let Self { wedges, by_next, is_first, seen, fan } = self;
+        by_next.clear();
+        by_next.extend(wedges.iter().enumerate().map(|(k, wedge)| (wedge.next, k)));
+        // The few around a vertex are sorted by insertion.
+        by_next.sort_unstable();
+        let following = |k: usize| {
+            let found = by_next.binary_search_by_key(&wedges[k].last, |&(next, _)| next);
+            found.ok().map(|place| by_next[place].1)
+        };
         is_first.clear();
         is_first.resize(wedges.len(), true);
         seen.clear();
@@ -219,10 +229,10 @@ impl Patch {
                 let mut wedge = Some(start);
                 while let Some(k) = wedge.filter(|&k| !seen[k]) {
                     seen[k] = true;
-                    fan.push(wedges[k]);
+                    fan.push(k);
                     wedge = following(k);
                 }
-                each(fan, closed);
+                each(wedges, fan, closed);
             }
         }
     }
@@ -230,27 +240,42 @@ impl Patch {
 
 /// Balances each wedge of a fan, and chooses the circulation next to `-mu_i grad u_ih`. The action `-(-1)^i lambda_a` is given
 /// where the fan is open; around an interior vertex, the last wedge must lead back to the first.
-fn equilibrate(fan: &[Wedge], action: Option<f64>, membrane: usize, row: &mut [[Change; 2]]) {
-    let jump = |k: usize| {
-        let after = if k + 1 < fan.len() { k + 1 } else { 0 };
+fn equilibrate(
+    wedges: &[Wedge],
+    fan: &[usize],
+    action: Option<f64>,
+    membrane: usize,
+    row: &mut [[Change; 2]],
+) {
+    // What leaves a wedge enters the next one with this.
+    let jump = |position: usize| {
+        let after = if position + 1 < fan.len() { position + 1 } else { 0 };
         if after == 0 && action.is_some() {
             return 0.0;
         }
-        let (here, there) = (fan[k].flux[membrane], fan[after].flux[membrane]);
-        let [midpoint, a] = fan[k].spoke;
+        let wedge = &wedges[fan[position]];
+        let (here, there) = (wedge.flux[membrane], wedges[fan[after]].flux[membrane]);
+        let [midpoint, a] = wedge.spoke;
         through([here[0] - there[0], here[1] - there[1]], midpoint, a)
     };
-    let sum = |of_wedge: &dyn Fn(usize) -> f64| (0..fan.len()).map(of_wedge).sum::<f64>();
-    let action = action.unwrap_or_else(|| -sum(&|k| fan[k].load[membrane] + jump(k)) / sum(&|k| fan[k].area));
+    let action = action.unwrap_or_else(|| {
+        let (mut force, mut area) = (0.0, 0.0);
+        for (position, &k) in fan.iter().enumerate() {
+            force += wedges[k].load[membrane] + jump(position);
+            area += wedges[k].area;
+        }
+        -force / area
+    });
     let mut entering = 0.0;
     let (mut with_circulation, mut circulation_sq) = (0.0, 0.0);
-    for (k, wedge) in fan.iter().enumerate() {
-        let source = wedge.load[membrane] + action * wedge.area;
-        row[wedge.place][membrane] = Change { entering, source };
-        with_circulation += entering * wedge.products.cc + source * wedge.products.cs;
-        circulation_sq += wedge.products.cc;
-        entering += source + jump(k);
+    for (position, &k) in fan.iter().enumerate() {
+        let Wedge { load, area, products, .. } = &wedges[k];
+        let source = load[membrane] + action * area;
+        row[k][membrane] = Change { entering, source };
+        with_circulation += entering * products.cc + source * products.cs;
+        circulation_sq += products.cc;
+        entering += source + jump(position);
     }
     let alpha = -with_circulation / circulation_sq;
-    fan.iter().for_each(|wedge| row[wedge.place][membrane].entering += alpha);
+    fan.iter().for_each(|&k| row[k][membrane].entering += alpha);
 }

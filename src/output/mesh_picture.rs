@@ -85,13 +85,23 @@ pub fn render_mesh(picture: &MeshPicture) -> Result<Vec<u8>, MeshPictureError> {
     check(picture)?;
     let whole = Window::whole(picture.mesh, WHOLE);
     let canvas = if whole.spacing >= LEGIBLE || whole.vertices <= VERTICES {
-        alone(picture, &whole)
+        alone(picture, &whole, panel::meshes)
     } else {
         let overview = Window::whole(picture.mesh, OVERVIEW);
         let enlarged = Window::enlarged(picture.mesh, VERTICES, ENLARGED, &contact_rim(picture));
         with_enlarged(picture, &overview, &enlarged)
     };
     Ok(canvas.encode()?)
+}
+
+/// Draws all of a triangulation in thin lines over the tints of the contact: the bytes of a PNG file, the same for the same
+/// data. Where triangles are too small to be told apart, it is dark: so it shows where an adaptive mesh is fine.
+///
+/// # Errors
+/// See [`MeshPictureError`].
+pub fn render_triangulation(picture: &MeshPicture) -> Result<Vec<u8>, MeshPictureError> {
+    check(picture)?;
+    Ok(alone(picture, &Window::whole(picture.mesh, WHOLE), panel::all_triangles).encode()?)
 }
 
 fn check(picture: &MeshPicture) -> Result<(), MeshPictureError> {
@@ -115,8 +125,11 @@ fn contact_rim(picture: &MeshPicture) -> Vec<[f64; 2]> {
     mixed.flatten().filter(|&&a| contact[a]).map(|&a| picture.mesh.points()[a]).collect()
 }
 
-/// The whole mesh.
-fn alone(picture: &MeshPicture, whole: &Window) -> Canvas {
+/// What is drawn in a window: both meshes, say.
+type Panel = fn(&MeshPicture, &Window, &[[usize; 2]]) -> Canvas;
+
+/// The whole domain.
+fn alone(picture: &MeshPicture, whole: &Window, panel: Panel) -> Canvas {
     let [width, height] = whole.size();
     let size = [(LEFT + width + RIGHT).max(NARROWEST), TOP + height + BOTTOM];
     let mut canvas = Canvas::new(size);
@@ -124,7 +137,7 @@ fn alone(picture: &MeshPicture, whole: &Window) -> Canvas {
     legend(&mut canvas, picture);
     let corner = [LEFT + (size[0] - LEFT - RIGHT - width) / 2, TOP];
     let boundary = boundary_edges(picture.mesh.triangles());
-    let frame = place(&mut canvas, &panel::meshes(picture, whole, &boundary), whole, corner);
+    let frame = place(&mut canvas, &panel(picture, whole, &boundary), whole, corner);
     left_axis(&mut canvas, frame, whole);
     canvas
 }

@@ -9,7 +9,7 @@ use super::prolongation::Fields;
 use super::{StudyError, mark};
 use crate::action::{ContactSolution, certify};
 use crate::discretization::Discretization;
-use crate::error::{ErrorBound, ErrorNorms, residual_indicators};
+use crate::error::{ErrorBound, energy_error, residual_indicators};
 use crate::mesh::{Bisection, Mesh};
 use crate::problem::{ContactProblem, Domain, ExactSolution};
 use crate::qp::Status;
@@ -69,7 +69,7 @@ pub struct AdaptiveLevel {
     pub boundary: f64,
     /// Likewise.
     pub algebraic: f64,
-    /// The residual estimator, see [`residual_indicators`].
+    /// The residual estimator with the action of the bound, see [`residual_indicators`].
     pub residual_estimator: f64,
     /// `|||u_h|||`.
     pub energy_norm: f64,
@@ -176,8 +176,9 @@ impl AdaptiveStudy {
         solve_seconds: f64,
     ) -> Result<AdaptiveLevel, StudyError> {
         let Bounded { solution, bound, tolerance, bound_seconds } = bounded;
-        let residuals = residual_indicators(&self.problem, d, solution.displacement(), solution.lambda())?;
-        let norms = self.exact.as_ref().map(|exact| ErrorNorms::new(d, solution, exact)).transpose()?;
+        let displacement = solution.displacement();
+        let residuals = residual_indicators(d, displacement, &bound.action)?;
+        let error = self.exact.as_ref().map(|exact| energy_error(d, displacement, exact)).transpose()?;
         let quality = d.mesh().quality();
         let parts = bound.parts;
         Ok(AdaptiveLevel {
@@ -196,7 +197,7 @@ impl AdaptiveStudy {
             algebraic: parts.algebraic,
             residual_estimator: residuals.iter().sum::<f64>().sqrt(),
             energy_norm: bound.energy_norm,
-            energy_error: norms.map(|norms| norms.energy),
+            energy_error: error,
             tolerance: *tolerance,
             iterations: solution.statistics().iterations,
             solve_seconds: solve_seconds - bound_seconds,

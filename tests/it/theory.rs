@@ -8,7 +8,7 @@ use std::path::Path;
 use membrane_contact::cli::{CaseFile, MeshSource};
 use membrane_contact::mesh::{MeshFamily, generate};
 use membrane_contact::solver::{ActiveSet, SolverOptions};
-use membrane_contact::study::{ConvergenceStudy, LevelErrors, MEASURES, fitted_rate, markdown};
+use membrane_contact::study::{ConvergenceStudy, LevelErrors, MEASURES, Tolerance, fitted_rate, markdown};
 
 /// The rates expected over all levels, in the order of [`MEASURES`], and how far a measured one may be off. A curved or
 /// oblique free boundary passes through the elements differently on each level: its rates are erratic.
@@ -71,7 +71,14 @@ fn study(case: &str, cells: Option<usize>) -> ConvergenceStudy {
         None => MeshFamily::of_domain(mesh, &domain),
     };
     let exact = case.exact.expect("the case has a known solution");
-    ConvergenceStudy::new(exact, family, Box::new(ActiveSet), SolverOptions::default()).expect("valid data")
+    ConvergenceStudy::new(
+        exact,
+        family,
+        Box::new(ActiveSet),
+        SolverOptions::default(),
+        Tolerance::Fixed(1e-8),
+    )
+    .expect("valid data")
 }
 
 fn levels(mut study: ConvergenceStudy, count: usize) -> Vec<LevelErrors> {

@@ -23,7 +23,6 @@ pub(super) struct Cells<'a> {
     pub(super) displacement: &'a [Vec<f64>; 2],
     /// `lt` over vertices.
     pub(super) lambda: &'a [f64],
-    pub(super) load: [&'a [ElementMoments]; 2],
     pub(super) fluxes: WedgeFluxes<'a>,
     pub(super) trace: Trace<'a>,
 }
@@ -122,8 +121,8 @@ impl Cells<'_> {
         let (corners, area) = (self.d.mesh().corners(k), self.d.mesh().triangle_area(k));
         let edge_sq = [0, 1, 2].map(|j| distance_sq(corners[j], corners[(j + 1) % 3]));
         let diameter = edge_sq.into_iter().fold(0.0, f64::max).sqrt();
-        self.load.map(|load| {
-            let ElementMoments { integrals, deviation } = load[k];
+        [0, 1].map(|i: usize| {
+            let ElementMoments { integrals, deviation } = self.d.moments[i].on(self.d.mesh(), k);
             let mean = integrals.iter().sum::<f64>() / area;
             let shares_sq: f64 = integrals.iter().map(|f| (3.0 * f / area - mean).powi(2)).sum();
             diameter / PI * (deviation + (5.0 / 9.0 * area * shares_sq).sqrt())

@@ -1,6 +1,7 @@
 use std::collections::BTreeMap;
 
 use super::*;
+use crate::fem::moments::BLOCK;
 use crate::mesh::samples::{irregular, renumbered, square};
 use crate::problem::Expression;
 

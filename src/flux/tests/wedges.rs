@@ -2,7 +2,6 @@
 
 use super::samples::{cubic_problem, loads, meshes, solve};
 use crate::discretization::Discretization;
-use crate::fem::element_moments;
 use crate::flux::{Reconstruction, Reconstructor, WedgeFluxes, discrete_flux};
 use crate::mesh::{Mesh, SubTriangulation, VertexKind, VertexTriangles};
 use crate::problem::ContactProblem;
@@ -19,9 +18,7 @@ fn differences(problem: &ContactProblem, mesh: &Mesh, kind: Reconstruction) -> [
     let fluxes =
         Reconstructor::new(&d, &sub, loads(problem, mesh)).reconstruct(solution.displacement(), kind);
     let around = VertexTriangles::new(mesh.points().len(), mesh.triangles());
-    let moments = [0, 1].map(|i| element_moments(mesh, &problem.load()[i]).unwrap());
-    let load = [moments[0].as_slice(), moments[1].as_slice()];
-    let wedges = WedgeFluxes::new(&d, &around, solution.displacement(), load, solution.lambda());
+    let wedges = WedgeFluxes::new(&d, &around, solution.displacement(), solution.lambda());
     let (mut distances, mut traces) = (Largest::default(), Largest::default());
     for (i, flux) in fluxes.iter().enumerate() {
         let q = discrete_flux(&d, i, &solution.displacement()[i]);

@@ -13,6 +13,9 @@ const DOTTED: f64 = 22.0;
 /// At this distance of the vertices in pixels the lines have their full width.
 const ROOMY: f64 = 50.0;
 
+/// Width in pixels of the lines of a mesh that is shown as a whole.
+const HAIRLINE: f64 = 0.6;
+
 /// Width in pixels of the lines of `T_h`, in full.
 pub(super) const THIN: f64 = 1.6;
 /// Width in pixels of the lines of `D_h`, in full.
@@ -33,6 +36,20 @@ pub(super) fn meshes(picture: &MeshPicture, window: &Window, boundary: &[[usize;
 pub(super) fn domain(picture: &MeshPicture, window: &Window, boundary: &[[usize; 2]]) -> Canvas {
     let mut canvas = Canvas::new(window.size());
     tints(&mut canvas, picture, window);
+    outline(&mut canvas, picture, window, boundary);
+    canvas
+}
+
+/// All triangles in the thinnest lines, over the contact region.
+pub(super) fn all_triangles(picture: &MeshPicture, window: &Window, boundary: &[[usize; 2]]) -> Canvas {
+    let mut canvas = Canvas::new(window.size());
+    tints(&mut canvas, picture, window);
+    for t in 0..picture.mesh.triangles().len() {
+        let [a, b, c] = picture.mesh.corners(t).map(|corner| window.at(corner));
+        for ends in [[a, b], [b, c], [c, a]] {
+            canvas.line(ends, HAIRLINE, INK);
+        }
+    }
     outline(&mut canvas, picture, window, boundary);
     canvas
 }
