@@ -247,7 +247,7 @@ fn verdict(
         Stop::Reached => return Ok(()),
         Stop::Vertices => {
             format!(
-                "the next mesh would exceed {} vertices (--max-vertices)",
+                "the next mesh would have more than {} vertices (--max-vertices)",
                 grouped(arguments.max_vertices)
             )
         }

@@ -269,7 +269,7 @@ const BAD_MESH_FILE: &[Fault] = &[
 
 /// Arguments that are refused, what the message has to say, and the arguments with the remedy taken.
 const BAD_ARGUMENTS: &[(&str, &[&str], &str)] = &[
-    ("", &["requires a subcommand", "solve, check, converge, bench, export, cases"], "--help"),
+    ("", &["requires a subcommand", "solve, check, converge, adapt, bench, export, cases"], "--help"),
     ("frobnicate case.toml", &["'frobnicate'", "membranes --help"], "check case.toml"),
     ("sovle case.toml", &["'sovle'", "'solve'"], "solve case.toml"),
     ("solve", &["<CASE.toml>", "not provided"], "solve case.toml"),

@@ -2,6 +2,8 @@
 
 mod common;
 
+#[cfg(feature = "cli")]
+mod adapt;
 mod adaptive_hierarchy;
 #[cfg(feature = "cli")]
 mod answer;

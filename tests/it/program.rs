@@ -201,7 +201,7 @@ fn the_summary_keeps_its_contract() {
         let residual = summary["residuals"][name].as_f64().expect(name);
         assert!((0.0..=tolerance).contains(&residual), "{name} {residual}");
     }
-    for name in ["mesh", "assembly", "setup", "solve", "output"] {
+    for name in ["mesh", "assembly", "setup", "solve", "bound", "output"] {
         assert!(summary["seconds"][name].as_f64().is_some_and(|seconds| seconds >= 0.0), "{name}");
     }
 }
