@@ -177,3 +177,67 @@ fn of_displacements_that_do_not_solve_the_problem() {
     }
     assert!(algebraic > 0);
 }
+
+/// Each membrane for itself in equilibrium with its load, as if the other were not there: fluxes and actions are perfect, and the
+/// error is all in the overlap.
+#[test]
+fn of_membranes_that_pass_through_each_other() {
+    let exact = exact(Case::FullContact, &[]);
+    let problem = problem(&exact);
+    let mesh = mesh(&exact.domain(), 16);
+    // So high that they do not meet.
+    const HIGH: f64 = 100.0;
+    let [f1, f2] = exact.load_functions();
+    let [mu1, mu2] = exact.tension();
+    let apart = ContactProblem::builder().tension(mu1, mu2).load(f1, f2).height(HIGH).build().unwrap();
+    let [mut u1, u2] = solve(&Discretization::new(&apart, &mesh).unwrap()).displacement().clone();
+    u1.iter_mut().for_each(|u1| *u1 -= HIGH);
+    assert!(u1.iter().zip(&u2).any(|(u1, u2)| u1 < u2), "they overlap");
+    let d = Discretization::new(&problem, &mesh).unwrap();
+    let displacement = [u1, u2];
+    let found = bound(&problem, &exact.domain(), &d, &displacement);
+    let error = energy_error(&d, &displacement, &exact);
+    assert!(found.total >= error, "{} is below {error}", found.total);
+    // The twin: fluxes and loads alone know nothing of it.
+    assert!(found.parts.discretization() < 0.5 * error, "{:?}", found.parts);
+}
+
+/// Between the polygon and the circle the membranes are continued by their heights; there, all of the gradient is error.
+#[test]
+fn on_a_disk_up_to_its_circle() {
+    let exact = exact(Case::Disk, &[]);
+    let problem = problem(&exact);
+    for rings in [8, 32] {
+        let mesh = mesh(&exact.domain(), rings);
+        let d = Discretization::new(&problem, &mesh).unwrap();
+        let displacement = solve(&d).displacement().clone();
+        let found = bound(&problem, &exact.domain(), &d, &displacement);
+        let beyond_sq = beyond_the_polygon_sq(&exact, &mesh);
+        let error = energy_error(&d, &displacement, &exact).hypot(beyond_sq.sqrt());
+        assert!(found.total >= error && found.total <= 1.35 * error, "{}, {error}", found.total);
+        // The twin: a bound on the polygon alone.
+        let polygon = ErrorBound::new(&problem, None, &d, &displacement).unwrap();
+        assert!(polygon.total < error, "{} {error}", polygon.total);
+    }
+}
+
+/// `sum_i mu_i |grad u_i|^2` integrated between the unit circle and the chords of the mesh, for a radial solution.
+fn beyond_the_polygon_sq(exact: &ExactSolution, mesh: &Mesh) -> f64 {
+    let on_circle = |point: &&[f64; 2]| (point[0].hypot(point[1]) - 1.0).abs() < 1e-9;
+    let sides = mesh.points().iter().filter(on_circle).count();
+    let half = std::f64::consts::PI / sides as f64;
+    let (angles, radii) = (40, 20);
+    let mut sum = 0.0;
+    for j in 0..angles {
+        // From the middle of a chord to its end.
+        let angle = half * (j as f64 + 0.5) / angles as f64;
+        let chord = half.cos() / angle.cos();
+        for k in 0..radii {
+            let r = chord + (1.0 - chord) * (k as f64 + 0.5) / radii as f64;
+            let weight = r * (1.0 - chord) / radii as f64 * half / angles as f64;
+            let squares = exact.grad_u(r, 0.0).map(|[x, y]| x * x + y * y);
+            sum += weight * (exact.tension()[0] * squares[0] + exact.tension()[1] * squares[1]);
+        }
+    }
+    2.0 * sides as f64 * sum
+}
