@@ -85,7 +85,7 @@ pub fn render_mesh(picture: &MeshPicture) -> Result<Vec<u8>, MeshPictureError> {
     check(picture)?;
     let whole = Window::whole(picture.mesh, WHOLE);
     let canvas = if whole.spacing >= LEGIBLE || whole.vertices <= VERTICES {
-        alone(picture, &whole, panel::meshes)
+        alone(picture, &whole, Show::Both)
     } else {
         let overview = Window::whole(picture.mesh, OVERVIEW);
         let enlarged = Window::enlarged(picture.mesh, VERTICES, ENLARGED, &contact_rim(picture));
@@ -101,7 +101,7 @@ pub fn render_mesh(picture: &MeshPicture) -> Result<Vec<u8>, MeshPictureError> {
 /// See [`MeshPictureError`].
 pub fn render_triangulation(picture: &MeshPicture) -> Result<Vec<u8>, MeshPictureError> {
     check(picture)?;
-    Ok(alone(picture, &Window::whole(picture.mesh, WHOLE), panel::all_triangles).encode()?)
+    Ok(alone(picture, &Window::whole(picture.mesh, WHOLE), Show::Triangulation).encode()?)
 }
 
 fn check(picture: &MeshPicture) -> Result<(), MeshPictureError> {
@@ -125,19 +125,27 @@ fn contact_rim(picture: &MeshPicture) -> Vec<[f64; 2]> {
     mixed.flatten().filter(|&&a| contact[a]).map(|&a| picture.mesh.points()[a]).collect()
 }
 
-/// What is drawn in a window: both meshes, say.
-type Panel = fn(&MeshPicture, &Window, &[[usize; 2]]) -> Canvas;
+/// Which of the meshes are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Show {
+    Both,
+    Triangulation,
+}
 
 /// The whole domain.
-fn alone(picture: &MeshPicture, whole: &Window, panel: Panel) -> Canvas {
+fn alone(picture: &MeshPicture, whole: &Window, show: Show) -> Canvas {
     let [width, height] = whole.size();
     let size = [(LEFT + width + RIGHT).max(NARROWEST), TOP + height + BOTTOM];
     let mut canvas = Canvas::new(size);
     heading(&mut canvas, picture.title);
-    legend(&mut canvas, picture);
+    legend(&mut canvas, picture, show);
     let corner = [LEFT + (size[0] - LEFT - RIGHT - width) / 2, TOP];
     let boundary = boundary_edges(picture.mesh.triangles());
-    let frame = place(&mut canvas, &panel(picture, whole, &boundary), whole, corner);
+    let panel = match show {
+        Show::Both => panel::meshes(picture, whole, &boundary),
+        Show::Triangulation => panel::all_triangles(picture, whole, &boundary),
+    };
+    let frame = place(&mut canvas, &panel, whole, corner);
     left_axis(&mut canvas, frame, whole);
     canvas
 }
@@ -148,7 +156,7 @@ fn with_enlarged(picture: &MeshPicture, overview: &Window, enlarged: &Window) ->
     let size = [LEFT + width + BETWEEN + side + RIGHT_WITH_AXIS, TOP + side + BOTTOM];
     let mut canvas = Canvas::new(size);
     heading(&mut canvas, picture.title);
-    legend(&mut canvas, picture);
+    legend(&mut canvas, picture, Show::Both);
     let boundary = boundary_edges(picture.mesh.triangles());
     let corner = [LEFT, TOP + (side - height) / 2];
     let left = place(&mut canvas, &panel::domain(picture, overview, &boundary), overview, corner);
@@ -220,7 +228,7 @@ fn mark(canvas: &mut Canvas, left: Frame, overview: &Window, right: Frame, enlar
 }
 
 /// What the lines and tints mean, below the title.
-fn legend(canvas: &mut Canvas, picture: &MeshPicture) {
+fn legend(canvas: &mut Canvas, picture: &MeshPicture, show: Show) {
     const SAMPLE: f64 = 44.0;
     const GAP: f64 = 14.0;
     const APART: f64 = 44.0;
@@ -235,9 +243,11 @@ fn legend(canvas: &mut Canvas, picture: &MeshPicture) {
     };
     line(canvas, x, 1.5 * panel::THIN, TRIANGULATION);
     x = name(canvas, x, &format!("Tₕ: {} triangles", grouped(picture.mesh.triangles().len())));
-    canvas.fill([[x, y - 14.0], [x + SAMPLE, y + 14.0]], DUAL_CELL);
-    line(canvas, x, panel::STRONG, DUAL);
-    x = name(canvas, x, &format!("Dₕ: {} dual cells", grouped(picture.dual.vertices().len())));
+    if show == Show::Both {
+        canvas.fill([[x, y - 14.0], [x + SAMPLE, y + 14.0]], DUAL_CELL);
+        line(canvas, x, panel::STRONG, DUAL);
+        x = name(canvas, x, &format!("Dₕ: {} dual cells", grouped(picture.dual.vertices().len())));
+    }
     if let Some(contact) = picture.contact {
         canvas.fill([[x, y - 14.0], [x + SAMPLE, y + 14.0]], DUAL_CONTACT);
         let count = picture.dual.vertices().iter().filter(|&&a| contact[a]).count();

@@ -60,6 +60,27 @@ fn the_lines_of_both_meshes_lie_where_the_meshes_are() {
 }
 
 #[test]
+fn all_of_a_triangulation_is_drawn_however_fine_and_dark_where_it_is_fine() {
+    let coarse = samples::square(8);
+    let mut bisection = crate::mesh::Bisection::new(coarse);
+    for _ in 0..9 {
+        let near = |t: &usize| bisection.mesh().corners(*t).iter().all(|&[x, y]| x.max(y) <= 0.25);
+        let marked: Vec<usize> = (0..bisection.mesh().triangles().len()).filter(near).collect();
+        bisection.refine(&marked).unwrap();
+    }
+    let mesh = bisection.mesh();
+    let dual = dual(mesh);
+    let bytes = render_triangulation(&MeshPicture { title: "", mesh, dual: &dual, contact: None }).unwrap();
+    let picture = Image::decode(&bytes);
+    let grey = |p: [f64; 2]| picture.at(on_picture(mesh, p, &picture)).map(u32::from).iter().sum::<u32>();
+    let dark = 3 * 60;
+    assert!(grey([0.1, 0.1]) < dark, "lines lie on one another where the mesh is fine");
+    assert!(grey([0.9, 0.82]) > dark, "and there is room between them where it is not");
+    // On an edge of the first mesh a line is seen.
+    assert!(grey([0.875, 0.8]) < grey([0.9, 0.82]));
+}
+
+#[test]
 fn cells_in_contact_and_no_others_are_tinted() {
     let mesh = samples::square(10);
     let touching = |p: &[f64; 2]| (p[0] - 0.5).hypot(p[1] - 0.5) < 0.25;
