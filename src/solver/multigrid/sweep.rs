@@ -158,24 +158,36 @@ impl Bounded<'_> {
         (0..x.len()).map(at).collect()
     }
 
-    /// Adds the part of the correction, cut off at the bound, that lowers the energy most: `t d`, `0 <= t <= 1`.
-    pub(super) fn line_search(&self, x: &mut [f64], correction: &[f64]) {
-        let d: Vec<f64> = (0..x.len()).map(|i| self.corrected(i, x[i], correction).0 - x[i]).collect();
+    /// By how much the energy is larger after a step than before it, as exactly as the step is known: the step times the mean
+    /// of the residuals.
+    pub(super) fn energy_change(&self, before: &[f64], after: &[f64]) -> f64 {
+        let mut change = 0.0;
+        for i in (0..after.len()).filter(|&i| before[i] != after[i]) {
+            change -= 0.5 * (after[i] - before[i]) * (self.residual(i, before) + self.residual(i, after));
+        }
+        change
+    }
+
+    /// Adds the part of the correction, cut off at the bound, that lowers the energy most: `t d`, `0 <= t <= 1`. Leaves `d`.
+    pub(super) fn line_search(&self, x: &mut [f64], correction: &[f64], d: &mut [f64]) {
+        for (i, (d, &x)) in d.iter_mut().zip(&*x).enumerate() {
+            *d = self.corrected(i, x, correction).0 - x;
+        }
         let (mut slope, mut curvature) = (0.0, 0.0);
         let Level { pattern, values, .. } = self.level;
         for i in (0..x.len()).filter(|&i| d[i] != 0.0) {
             slope += self.residual(i, x) * d[i];
-            curvature += (values.diagonal[i] * d[i] + values.off_diagonal_product(pattern, i, &d)) * d[i];
+            curvature += (values.diagonal[i] * d[i] + values.off_diagonal_product(pattern, i, d)) * d[i];
         }
         let step = if curvature > 0.0 { (slope / curvature).clamp(0.0, 1.0) } else { 0.0 };
         for (x, d) in x.iter_mut().zip(d) {
-            *x = larger(*x + step * d, self.lower);
+            *x = larger(*x + step * *d, self.lower);
         }
     }
 
     /// `(b - A x)_i`.
     #[inline(always)]
-    fn residual(&self, i: usize, x: &[f64]) -> f64 {
+    pub(super) fn residual(&self, i: usize, x: &[f64]) -> f64 {
         let Level { pattern, values, .. } = self.level;
         self.b[i] - values.diagonal[i] * x[i] - values.off_diagonal_product(pattern, i, x)
     }
@@ -183,7 +195,7 @@ impl Bounded<'_> {
 
 /// On a coarser level: Gauss-Seidel sweeps from zero for `A x = b`, the residual and its restriction.
 pub(super) fn descend(level: &Level, values: &Values, b: &[f64], x: &mut [f64], coarse: &mut [f64]) {
-    let Level { pattern, coloring, transfer, .. } = level;
+    let coloring = &level.coloring;
     let colors = coloring.colors();
     let relaxations = COARSE_SWEEPS * colors;
     x.fill(0.0);
@@ -196,30 +208,57 @@ pub(super) fn descend(level: &Level, values: &Values, b: &[f64], x: &mut [f64], 
         } else if stage < relaxations {
             relax(level, values, b, coloring.rows(window, stage % colors), x);
         } else {
-            // The last colour has no residual.
-            for i in coloring.window(window).start..coloring.rows(window, colors - 1).start {
-                let off = values.off_diagonal_product(pattern, i, x);
-                transfer.spread(i, b[i] - values.diagonal[i] * x[i] - off, coarse);
-            }
+            restrict_residual(level, values, b, window, x, coarse);
         }
     });
 }
 
-/// On a coarser level: the correction from the level below, and Gauss-Seidel sweeps.
-pub(super) fn ascend(level: &Level, values: &Values, b: &[f64], correction: &[f64], x: &mut [f64]) {
+/// On a coarser level: the correction from the level below, Gauss-Seidel sweeps, and for another correction the residual
+/// and its restriction.
+pub(super) fn ascend(
+    level: &Level,
+    values: &Values,
+    b: &[f64],
+    correction: &[f64],
+    x: &mut [f64],
+    coarse: Option<&mut [f64]>,
+) {
     let Level { coloring, transfer, .. } = level;
     let colors = coloring.colors();
-    coloring.pipeline(COARSE_SWEEPS * colors + 1, |stage, window| {
+    let relaxations = COARSE_SWEEPS * colors;
+    let mut coarse = coarse;
+    if let Some(coarse) = &mut coarse {
+        coarse.fill(0.0);
+    }
+    coloring.pipeline(relaxations + 1 + usize::from(coarse.is_some()), |stage, window| {
         if stage == 0 {
             for i in coloring.window(window) {
                 if values.inverse[i] != 0.0 {
                     x[i] += transfer.prolong(i, correction);
                 }
             }
-        } else {
+        } else if stage <= relaxations {
             relax(level, values, b, coloring.rows(window, (stage - 1) % colors), x);
+        } else if let Some(coarse) = &mut coarse {
+            restrict_residual(level, values, b, window, x, coarse);
         }
     });
+}
+
+/// Adds the restriction of the residual of a window. Rows of its last colour have no residual.
+fn restrict_residual(
+    level: &Level,
+    values: &Values,
+    b: &[f64],
+    window: usize,
+    x: &[f64],
+    coarse: &mut [f64],
+) {
+    let Level { pattern, coloring, transfer, .. } = level;
+    for i in coloring.window(window).start..coloring.rows(window, coloring.colors() - 1).start {
+        let off = values.off_diagonal_product(pattern, i, x);
+        transfer.spread(i, b[i] - values.diagonal[i] * x[i] - off, coarse);
+    }
 }
 
 fn relax(level: &Level, values: &Values, b: &[f64], rows: Range<usize>, x: &mut [f64]) {
