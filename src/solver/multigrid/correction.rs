@@ -1,32 +1,69 @@
-//! The linear V-cycle on the coarser levels, truncated.
+//! The linear cycle on the coarser levels, truncated.
 
 use super::direct::Direct;
 use super::sweep::{ascend, descend};
 use super::truncation::Truncation;
 use crate::solver::cholesky::NotFactored;
-use crate::solver::hierarchy::Hierarchy;
+use crate::solver::hierarchy::{Hierarchy, Values};
+
+/// With truncated hat functions, levels that are this far below the finest one get two corrections. Such functions do not
+/// fit smooth ones that vanish along the rim of the contact set; in a V-cycle the errors of all levels add up, and smooth ones
+/// fall by 0.3 a cycle in place of 0.1.
+const TWICE: usize = 3;
+
+/// As long as the contact set changes. What the obstacle cuts off from a smooth error is rough, and its residual larger by the
+/// square of the vertices it reached over: smooth errors have to be smaller then.
+const UNSETTLED_TWICE: usize = 2;
+
+/// The level whose corrections are exact already: it is solved directly below.
+const EXACT: usize = 1;
 
 /// The coarser levels with their vectors.
 pub(super) struct CoarseLevels<'h> {
     hierarchy: &'h Hierarchy,
-    truncation: Truncation<'h>,
+    matrices: Matrices<'h>,
     direct: Direct,
     x: Vec<Vec<f64>>,
     b: Vec<Vec<f64>>,
 }
 
+/// The matrices of the coarser levels.
+enum Matrices<'h> {
+    /// Without an obstacle.
+    Whole(&'h Hierarchy),
+    /// They follow the vertices in contact.
+    Truncated(Truncation<'h>),
+}
+
+impl Matrices<'_> {
+    fn values(&self, level: usize) -> &Values {
+        match self {
+            Self::Whole(hierarchy) => &hierarchy.levels()[level].values,
+            Self::Truncated(truncation) => truncation.values(level),
+        }
+    }
+}
+
 impl<'h> CoarseLevels<'h> {
-    pub(super) fn new(hierarchy: &'h Hierarchy) -> Result<Self, NotFactored> {
+    /// With an `obstacle` they can be truncated.
+    pub(super) fn new(hierarchy: &'h Hierarchy, obstacle: bool) -> Result<Self, NotFactored> {
         let coarser = || hierarchy.levels()[..hierarchy.finest()].iter();
         let zeros = || coarser().map(|level| vec![0.0; level.pattern.rows()]).collect();
+        let matrices = match obstacle {
+            true => Matrices::Truncated(Truncation::new(hierarchy)),
+            false => Matrices::Whole(hierarchy),
+        };
         let direct = Direct::new(&hierarchy.levels()[0])?;
-        Ok(Self { hierarchy, truncation: Truncation::new(hierarchy), direct, x: zeros(), b: zeros() })
+        Ok(Self { hierarchy, matrices, direct, x: zeros(), b: zeros() })
     }
 
     /// Another level becomes the finest one, with nothing in contact yet.
     pub(super) fn restart(&mut self, finest: usize) -> Result<(), NotFactored> {
-        self.truncation.reset(finest);
-        self.direct.refactor(self.truncation.values(0))
+        if let Matrices::Truncated(truncation) = &mut self.matrices {
+            truncation.reset(finest);
+            self.direct.refactor(truncation.values(0))?;
+        }
+        Ok(())
     }
 
     /// The correction that [`solve`](Self::solve) has found.
@@ -39,7 +76,7 @@ impl<'h> CoarseLevels<'h> {
         (&self.x[finest - 1], &mut self.b[finest - 1])
     }
 
-    /// One V-cycle below the level `finest` for its functional, truncated where the vertices are `frozen`; those that have
+    /// One cycle below the level `finest` for its functional, truncated where the vertices are `frozen`; those that have
     /// changed since the last time are named.
     pub(super) fn solve(
         &mut self,
@@ -47,19 +84,45 @@ impl<'h> CoarseLevels<'h> {
         frozen: &[bool],
         changed: &[u32],
     ) -> Result<(), NotFactored> {
-        if self.truncation.update(finest, frozen, changed) {
-            self.direct.refactor(self.truncation.values(0))?;
+        let mut twice_up_to = 0;
+        if let Matrices::Truncated(truncation) = &mut self.matrices {
+            if truncation.update(finest, frozen, changed) {
+                self.direct.refactor(truncation.values(0))?;
+            }
+            twice_up_to = finest.saturating_sub(if changed.is_empty() { TWICE } else { UNSETTLED_TWICE });
         }
-        let levels = self.hierarchy.levels();
-        for l in (1..finest).rev() {
-            let (below, above) = self.b.split_at_mut(l);
-            descend(&levels[l], self.truncation.values(l), &above[0], &mut self.x[l], &mut below[l - 1]);
+        self.cycle(finest - 1, twice_up_to)
+    }
+
+    /// A cycle on level `l` from zero.
+    fn cycle(&mut self, l: usize, twice_up_to: usize) -> Result<(), NotFactored> {
+        if l == 0 {
+            self.x[0] = self.direct.solve(&self.b[0])?;
+            return Ok(());
         }
-        self.x[0] = self.direct.solve(&self.b[0])?;
-        for l in 1..finest {
-            let (below, above) = self.x.split_at_mut(l);
-            ascend(&levels[l], self.truncation.values(l), &self.b[l], &below[l - 1], &mut above[0]);
+        self.descend(l);
+        self.cycle(l - 1, twice_up_to)?;
+        if EXACT < l && l <= twice_up_to {
+            self.ascend(l, true);
+            self.cycle(l - 1, twice_up_to)?;
         }
+        self.ascend(l, false);
         Ok(())
+    }
+
+    /// From zero to the functional on the level below.
+    fn descend(&mut self, l: usize) {
+        let (below, b) = self.b.split_at_mut(l);
+        let level = &self.hierarchy.levels()[l];
+        descend(level, self.matrices.values(l), &b[0], &mut self.x[l], &mut below[l - 1]);
+    }
+
+    /// From the correction of the level below, and `again` to its functional.
+    fn ascend(&mut self, l: usize, again: bool) {
+        let (b_below, b) = self.b.split_at_mut(l);
+        let (x_below, x) = self.x.split_at_mut(l);
+        let functional = again.then_some(&mut b_below[l - 1][..]);
+        let level = &self.hierarchy.levels()[l];
+        ascend(level, self.matrices.values(l), &b[0], &x_below[l - 1], &mut x[0], functional);
     }
 }

@@ -1,7 +1,7 @@
 //! One half of the decoupled problem, by truncated nonsmooth Newton multigrid with nested iteration (Graeser, Kornhuber,
 //! J. Comput. Math. 27 (2009) 1).
 //!
-//! A cycle is a linear V-cycle on the coarser levels, truncated at the vertices in contact, then projected Gauss-Seidel on the
+//! A cycle is a linear one on the coarser levels, truncated at the vertices that are pressed into contact, then projected Gauss-Seidel on the
 //! finest level. Every part of it lowers the energy; where the correction has been cut off at the obstacle and the energy
 //! has not fallen, it is damped by an exact line search. Once the contact set stays, the cycles solve the linear system
 //! of a step of the active set method.
@@ -20,6 +20,9 @@ const COARSE_CYCLES: usize = 2;
 /// A method that has not lowered the largest residual to this fraction in [`PATIENCE`] cycles has arrived at rounding.
 const PROGRESS: f64 = 0.5;
 const PATIENCE: usize = 3;
+
+/// Two energies that differ by less than this fraction may do so by the rounding of their sums.
+const ENERGY_ROUNDING: f64 = 1e-12;
 
 /// `K x - y = b`, `x >= lower`, `y >= 0`, `y'(x - lower) = 0` at the vertices that are not held. Vectors are over the rows of
 /// the finest level.
@@ -63,11 +66,11 @@ pub(super) fn solve(
 ) -> Result<HalfSolution, NotFactored> {
     let HalfProblem { load, height, lower, weight, start } = problem;
     let (loads, heights) = hierarchy.lifted(load, height);
-    let mut coarse = CoarseLevels::new(hierarchy)?;
+    let mut coarse = CoarseLevels::new(hierarchy, lower.is_finite())?;
     let unweighted = vec![1.0; hierarchy.levels()[hierarchy.finest() - 1].pattern.rows()];
     let on_level = |l: usize| {
-        let weight = if l == hierarchy.finest() { &weight } else { &unweighted };
-        Bounded { level: &hierarchy.levels()[l], b: &loads[l], lower, weight }
+        let (weight, tolerance) = if l == hierarchy.finest() { (&weight, 1.0) } else { (&unweighted, 0.0) };
+        Bounded { level: &hierarchy.levels()[l], b: &loads[l], lower, weight, tolerance }
     };
     let mut cycles = Vec::new();
     let x = match start {
@@ -77,7 +80,7 @@ pub(super) fn solve(
             let coarser = heights.iter().enumerate().take(hierarchy.finest()).skip(1);
             for (l, height) in coarser {
                 let limits = Limits { cycles: COARSE_CYCLES, ..*limits };
-                let found = Cycles::new(l, on_level(l), x, &mut coarse)?.run(&limits, 0.0)?;
+                let found = Cycles::new(l, on_level(l), x, &mut coarse)?.run(&limits)?;
                 cycles.extend(found.cycles);
                 x = prolonged(hierarchy, l, found.x, height, lower);
             }
@@ -85,7 +88,7 @@ pub(super) fn solve(
         }
     };
     let finest = hierarchy.finest();
-    let mut found = Cycles::new(finest, on_level(finest), x, &mut coarse)?.run(limits, 1.0)?;
+    let mut found = Cycles::new(finest, on_level(finest), x, &mut coarse)?.run(limits)?;
     cycles.append(&mut found.cycles);
     Ok(HalfSolution { cycles, ..found })
 }
@@ -132,8 +135,9 @@ impl<'c, 'h> Cycles<'c, 'h> {
         })
     }
 
-    /// Until the weighted residual is at most `tolerance` and the contact set stays.
-    fn run(mut self, limits: &Limits, tolerance: f64) -> Result<HalfSolution, NotFactored> {
+    /// Until the weighted residual is within the tolerance and the contact set stays.
+    fn run(mut self, limits: &Limits) -> Result<HalfSolution, NotFactored> {
+        let tolerance = self.bounded.tolerance;
         let mut history = vec![self.relax(false)];
         let status = loop {
             let cycles = history.len() - 1;
@@ -164,12 +168,23 @@ impl<'c, 'h> Cycles<'c, 'h> {
     /// Adds the correction and relaxes; damps it where that has not lowered the energy.
     fn correct(&mut self, energy: f64) -> Found {
         let found = self.relax(true);
-        if found.cut == 0 || found.energy <= energy {
+        if found.cut == 0 || self.falls(energy, found.energy) {
             return found;
         }
         std::mem::swap(&mut self.x, &mut self.last);
-        self.bounded.line_search(&mut self.x, self.coarse.correction(self.finest));
+        for i in self.changed.drain(..) {
+            self.frozen[i as usize] ^= true;
+        }
+        let correction = self.coarse.correction(self.finest);
+        self.bounded.line_search(&mut self.x, correction, &self.frozen, &mut self.last);
         self.relax(false)
+    }
+
+    /// Whether the energy has fallen in the last step, from one to the other: that tells long before the answer is reached
+    /// no more than rounding.
+    fn falls(&self, before: f64, after: f64) -> bool {
+        after < before - ENERGY_ROUNDING * before.abs()
+            || self.bounded.energy_change(&self.last, &self.x) <= 0.0
     }
 
     /// The next iterate; the one before is kept.

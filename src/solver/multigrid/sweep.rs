@@ -26,6 +26,8 @@ pub(super) struct Bounded<'a> {
     pub(super) lower: f64,
     /// What makes of a residual a fraction of the tolerance.
     pub(super) weight: &'a [f64],
+    /// The largest weighted residual that is as good as none.
+    pub(super) tolerance: f64,
 }
 
 /// What a sweep over the finest level of a cycle has found.
@@ -42,62 +44,78 @@ pub(super) struct Found {
 /// Where a sweep over the finest level of a cycle leaves its results.
 pub(super) struct Iterate<'a> {
     pub(super) x: &'a mut [f64],
-    /// Whether `x` is at its bound.
+    /// Whether `x` is pressed against its bound. At the bound without a force, it may leave it by the next correction: a wide
+    /// region of such vertices would take a sweep for each layer.
     pub(super) frozen: &'a mut [bool],
     /// The vertices where that has changed.
     pub(super) changed: &'a mut Vec<u32>,
-    /// `P' r` of the residual where `x` is free.
+    /// `P' r` of the residual where `x` is not frozen.
     pub(super) coarse: &'a mut [f64],
 }
 
+impl Iterate<'_> {
+    #[inline(always)]
+    fn freeze(&mut self, i: usize, frozen: bool) {
+        if frozen != self.frozen[i] {
+            self.frozen[i] = frozen;
+            self.changed.push(i as u32);
+        }
+    }
+}
+
 impl Bounded<'_> {
-    /// `x = max(lower, old + P c)` where `old` is free, projected Gauss-Seidel sweeps through the colours, the
-    /// residual and its restriction. (Rows of the last colour have no residual then.)
+    /// `x = max(lower, old + P c)` where `old` is not frozen, projected Gauss-Seidel sweeps through the colours, the
+    /// residual and its restriction. (Rows of the last colour have no residual then, unless they are at the bound.)
     pub(super) fn correct_and_relax(
         &self,
         old: &[f64],
         correction: Option<&[f64]>,
-        iterate: Iterate,
+        mut iterate: Iterate,
     ) -> Found {
-        let Iterate { x, frozen, changed, coarse } = iterate;
         let coloring = &self.level.coloring;
         let colors = coloring.colors();
         let relaxations = SWEEPS * colors;
-        coarse.fill(0.0);
+        iterate.coarse.fill(0.0);
         let mut found = Found::default();
         coloring.pipeline(relaxations + 2, |stage, window| {
             if stage == 0 {
-                found.cut += self.correct(coloring.window(window), old, correction, x);
+                found.cut += self.correct(coloring.window(window), old, correction, &mut iterate);
             } else if stage <= relaxations {
-                self.relax(coloring.rows(window, (stage - 1) % colors), x);
+                self.relax(coloring.rows(window, (stage - 1) % colors), iterate.x);
             } else {
-                let settled = coloring.window(window).start..coloring.rows(window, colors - 1).start;
-                self.settle(settled, x, coarse, &mut found);
-                found.energy += self.freeze(coloring.window(window), x, frozen, changed);
+                let last = coloring.rows(window, colors - 1);
+                self.settle(coloring.window(window).start..last.start, &mut iterate, &mut found);
+                self.settle_last(last, &mut iterate, &mut found);
             }
         });
         found
     }
 
     /// The correction of some rows: how often it was cut off.
-    fn correct(&self, rows: Range<usize>, old: &[f64], correction: Option<&[f64]>, x: &mut [f64]) -> usize {
+    fn correct(
+        &self,
+        rows: Range<usize>,
+        old: &[f64],
+        correction: Option<&[f64]>,
+        iterate: &mut Iterate,
+    ) -> usize {
         let Some(correction) = correction else {
-            x[rows.clone()].copy_from_slice(&old[rows]);
+            iterate.x[rows.clone()].copy_from_slice(&old[rows]);
             return 0;
         };
         let mut cut = 0;
         for i in rows {
-            let (corrected, is_cut) = self.corrected(i, old[i], correction);
+            let (corrected, is_cut) = self.corrected(i, old[i], correction, iterate.frozen[i]);
             cut += usize::from(is_cut);
-            x[i] = corrected;
+            iterate.x[i] = corrected;
         }
         cut
     }
 
-    /// `max(lower, old + P c)` where `old` is free, and whether that was cut off.
+    /// `max(lower, old + P c)` where it is not frozen, and whether that was cut off.
     #[inline(always)]
-    fn corrected(&self, i: usize, old: f64, correction: &[f64]) -> (f64, bool) {
-        if old <= self.lower {
+    fn corrected(&self, i: usize, old: f64, correction: &[f64], frozen: bool) -> (f64, bool) {
+        if frozen {
             return (old, false);
         }
         let corrected = old + self.level.transfer.prolong(i, correction);
@@ -112,36 +130,45 @@ impl Bounded<'_> {
         }
     }
 
-    /// Residual, energy and restriction of some rows.
-    fn settle(&self, rows: Range<usize>, x: &[f64], coarse: &mut [f64], found: &mut Found) {
+    /// Residual, energy, contact and restriction of some rows.
+    fn settle(&self, rows: Range<usize>, iterate: &mut Iterate, found: &mut Found) {
         let (mut energy, mut violation) = (0.0, found.violation);
         for i in rows {
-            let r = self.residual(i, x);
-            energy -= 0.5 * x[i] * r;
-            if x[i] <= self.lower {
-                violation = larger(violation, r * self.weight[i]);
+            let (x, r) = (iterate.x[i], self.residual(i, iterate.x));
+            energy -= 0.5 * x * (r + self.b[i]);
+            let mut defect = r;
+            let mut pressed = false;
+            if x > self.lower {
+                defect = r.abs() - ROUNDING * self.level.values.diagonal[i] * x.abs();
             } else {
-                let rounding = ROUNDING * self.level.values.diagonal[i] * x[i].abs();
-                violation = larger(violation, (r.abs() - rounding) * self.weight[i]);
-                self.level.transfer.spread(i, r, coarse);
+                pressed = self.is_pressed(i, r);
+            }
+            violation = larger(violation, defect * self.weight[i]);
+            iterate.freeze(i, pressed);
+            if !pressed {
+                self.level.transfer.spread(i, r, iterate.coarse);
             }
         }
         found.energy += energy;
         found.violation = violation;
     }
 
-    /// Which rows are at the bound; returns their part of the energy as far as the residual has none in it.
-    fn freeze(&self, rows: Range<usize>, x: &[f64], frozen: &mut [bool], changed: &mut Vec<u32>) -> f64 {
+    /// The same for rows that were relaxed last: where `x` is free they have no residual.
+    fn settle_last(&self, rows: Range<usize>, iterate: &mut Iterate, found: &mut Found) {
         let mut energy = 0.0;
         for i in rows {
-            energy -= 0.5 * x[i] * self.b[i];
-            let bound = x[i] <= self.lower;
-            if bound != frozen[i] {
-                frozen[i] = bound;
-                changed.push(i as u32);
-            }
+            let x = iterate.x[i];
+            energy -= 0.5 * x * self.b[i];
+            let pressed = x <= self.lower && self.is_pressed(i, self.residual(i, iterate.x));
+            iterate.freeze(i, pressed);
         }
-        energy
+        found.energy += energy;
+    }
+
+    /// Whether the force on a row at its bound is more than nothing.
+    #[inline(always)]
+    fn is_pressed(&self, i: usize, r: f64) -> bool {
+        r * self.weight[i] < -self.tolerance
     }
 
     /// Zero at held vertices and nowhere below the bound.
@@ -158,24 +185,36 @@ impl Bounded<'_> {
         (0..x.len()).map(at).collect()
     }
 
-    /// Adds the part of the correction, cut off at the bound, that lowers the energy most: `t d`, `0 <= t <= 1`.
-    pub(super) fn line_search(&self, x: &mut [f64], correction: &[f64]) {
-        let d: Vec<f64> = (0..x.len()).map(|i| self.corrected(i, x[i], correction).0 - x[i]).collect();
+    /// By how much the energy is larger after a step than before it, as exactly as the step is known: the step times the mean
+    /// of the residuals.
+    pub(super) fn energy_change(&self, before: &[f64], after: &[f64]) -> f64 {
+        let mut change = 0.0;
+        for i in (0..after.len()).filter(|&i| before[i] != after[i]) {
+            change -= 0.5 * (after[i] - before[i]) * (self.residual(i, before) + self.residual(i, after));
+        }
+        change
+    }
+
+    /// Adds the part of the correction, cut off at the bound, that lowers the energy most: `t d`, `0 <= t <= 1`. Leaves `d`.
+    pub(super) fn line_search(&self, x: &mut [f64], correction: &[f64], frozen: &[bool], d: &mut [f64]) {
+        for (i, (d, &x)) in d.iter_mut().zip(&*x).enumerate() {
+            *d = self.corrected(i, x, correction, frozen[i]).0 - x;
+        }
         let (mut slope, mut curvature) = (0.0, 0.0);
         let Level { pattern, values, .. } = self.level;
         for i in (0..x.len()).filter(|&i| d[i] != 0.0) {
             slope += self.residual(i, x) * d[i];
-            curvature += (values.diagonal[i] * d[i] + values.off_diagonal_product(pattern, i, &d)) * d[i];
+            curvature += (values.diagonal[i] * d[i] + values.off_diagonal_product(pattern, i, d)) * d[i];
         }
         let step = if curvature > 0.0 { (slope / curvature).clamp(0.0, 1.0) } else { 0.0 };
         for (x, d) in x.iter_mut().zip(d) {
-            *x = larger(*x + step * d, self.lower);
+            *x = larger(*x + step * *d, self.lower);
         }
     }
 
     /// `(b - A x)_i`.
     #[inline(always)]
-    fn residual(&self, i: usize, x: &[f64]) -> f64 {
+    pub(super) fn residual(&self, i: usize, x: &[f64]) -> f64 {
         let Level { pattern, values, .. } = self.level;
         self.b[i] - values.diagonal[i] * x[i] - values.off_diagonal_product(pattern, i, x)
     }
@@ -183,7 +222,7 @@ impl Bounded<'_> {
 
 /// On a coarser level: Gauss-Seidel sweeps from zero for `A x = b`, the residual and its restriction.
 pub(super) fn descend(level: &Level, values: &Values, b: &[f64], x: &mut [f64], coarse: &mut [f64]) {
-    let Level { pattern, coloring, transfer, .. } = level;
+    let coloring = &level.coloring;
     let colors = coloring.colors();
     let relaxations = COARSE_SWEEPS * colors;
     x.fill(0.0);
@@ -196,30 +235,57 @@ pub(super) fn descend(level: &Level, values: &Values, b: &[f64], x: &mut [f64], 
         } else if stage < relaxations {
             relax(level, values, b, coloring.rows(window, stage % colors), x);
         } else {
-            // The last colour has no residual.
-            for i in coloring.window(window).start..coloring.rows(window, colors - 1).start {
-                let off = values.off_diagonal_product(pattern, i, x);
-                transfer.spread(i, b[i] - values.diagonal[i] * x[i] - off, coarse);
-            }
+            restrict_residual(level, values, b, window, x, coarse);
         }
     });
 }
 
-/// On a coarser level: the correction from the level below, and Gauss-Seidel sweeps.
-pub(super) fn ascend(level: &Level, values: &Values, b: &[f64], correction: &[f64], x: &mut [f64]) {
+/// On a coarser level: the correction from the level below, Gauss-Seidel sweeps, and for another correction the residual
+/// and its restriction.
+pub(super) fn ascend(
+    level: &Level,
+    values: &Values,
+    b: &[f64],
+    correction: &[f64],
+    x: &mut [f64],
+    coarse: Option<&mut [f64]>,
+) {
     let Level { coloring, transfer, .. } = level;
     let colors = coloring.colors();
-    coloring.pipeline(COARSE_SWEEPS * colors + 1, |stage, window| {
+    let relaxations = COARSE_SWEEPS * colors;
+    let mut coarse = coarse;
+    if let Some(coarse) = &mut coarse {
+        coarse.fill(0.0);
+    }
+    coloring.pipeline(relaxations + 1 + usize::from(coarse.is_some()), |stage, window| {
         if stage == 0 {
             for i in coloring.window(window) {
                 if values.inverse[i] != 0.0 {
                     x[i] += transfer.prolong(i, correction);
                 }
             }
-        } else {
+        } else if stage <= relaxations {
             relax(level, values, b, coloring.rows(window, (stage - 1) % colors), x);
+        } else if let Some(coarse) = &mut coarse {
+            restrict_residual(level, values, b, window, x, coarse);
         }
     });
+}
+
+/// Adds the restriction of the residual of a window. Rows of its last colour have no residual.
+fn restrict_residual(
+    level: &Level,
+    values: &Values,
+    b: &[f64],
+    window: usize,
+    x: &[f64],
+    coarse: &mut [f64],
+) {
+    let Level { pattern, coloring, transfer, .. } = level;
+    for i in coloring.window(window).start..coloring.rows(window, coloring.colors() - 1).start {
+        let off = values.off_diagonal_product(pattern, i, x);
+        transfer.spread(i, b[i] - values.diagonal[i] * x[i] - off, coarse);
+    }
 }
 
 fn relax(level: &Level, values: &Values, b: &[f64], rows: Range<usize>, x: &mut [f64]) {

@@ -16,13 +16,12 @@ pub(super) struct Truncation<'h> {
 }
 
 impl<'h> Truncation<'h> {
-    /// Nothing is truncated.
+    /// Without matrices yet: call [`reset`](Self::reset) next.
     pub(super) fn new(hierarchy: &'h Hierarchy) -> Self {
-        let coarser = &hierarchy.levels()[..hierarchy.finest()];
         let sizes = || hierarchy.levels().iter().map(|level| level.pattern.rows());
         Self {
             hierarchy,
-            values: coarser.iter().map(|level| level.values.clone()).collect(),
+            values: vec![Values::default(); hierarchy.finest()],
             sums: sizes().map(RowSum::new).collect(),
             marked: sizes().map(|rows| vec![false; rows]).collect(),
         }
