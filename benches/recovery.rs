@@ -1,15 +1,17 @@
-//! From displacements to the action and the certificate.
+//! From displacements to the action, the certificate and the bound of the error.
 
 mod common;
 
 use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
 use membrane_contact::action::{Action, certify};
-use membrane_contact::solver::{ActiveSet, ContactSolver, SolverOptions};
+use membrane_contact::error::ErrorBound;
+use membrane_contact::solver::{ActiveSet, ContactSolver, Multigrid, SolverOptions};
+use membrane_contact::study::comparison::square_problem;
 
 fn recovery(criterion: &mut Criterion) {
     let options = SolverOptions::default();
     let mut group = criterion.benchmark_group("recovery");
-    for cells in [64, 128] {
+    for cells in [64, 128, 256] {
         let mesh = common::mesh(cells);
         let d = common::discretize(&mesh);
         let candidate = ActiveSet.solve(&d, &options).expect("it runs");
@@ -19,6 +21,15 @@ fn recovery(criterion: &mut Criterion) {
         group.bench_function(BenchmarkId::new("certify", cells), |bencher| {
             let certified = |candidate| certify(&d, candidate, options.tolerance).expect("it certifies");
             bencher.iter_batched(|| candidate.clone(), certified, BatchSize::LargeInput);
+        });
+        // To be compared: the bound should cost less than a solve.
+        let problem = square_problem().expect("valid data");
+        group.bench_function(BenchmarkId::new("bound", cells), |bencher| {
+            bencher
+                .iter(|| ErrorBound::new(&problem, None, &d, &candidate.displacement).expect("of this mesh"));
+        });
+        group.bench_function(BenchmarkId::new("multigrid", cells), |bencher| {
+            bencher.iter(|| Multigrid.solve(&d, &options).expect("it runs"));
         });
     }
     group.finish();

@@ -20,9 +20,12 @@ TIME_LIMIT_SECONDS = 120
 
 @dataclass(frozen=True)
 class ProgramSolution:
-    """What `membranes solve` found: point data of `solution.vtu`, each (vertices,), and `summary.json`."""
+    """What `membranes solve` found: mesh, cell data (triangles,) and point data (vertices,) of `solution.vtu`, and
+    `summary.json`."""
 
     points: Vector
+    triangles: Vector
+    indicator: Vector
     u1: Vector
     u2: Vector
     gap: Vector
@@ -56,14 +59,15 @@ class Program:
         return read_npz(self.export(case, "npz"))
 
     @cache
-    def solve(self, case: Path) -> ProgramSolution:
-        """The program's own solution of `case`."""
-        directory = self.workspace / case.stem / "solve"
-        self._run("solve", str(case), "--out", str(directory))
+    def solve(self, case: Path, refine: int = 0) -> ProgramSolution:
+        """The program's own solution of `case`, on its mesh refined so many times."""
+        directory = self.workspace / case.stem / f"solve-{refine}"
+        self._run("solve", str(case), "--refine", str(refine), "--out", str(directory))
         mesh = meshio.read(directory / "solution.vtu")
         fields = {name: np.ravel(mesh.point_data[name]) for name in ("u1", "u2", "gap", "lambda", "contact")}
         summary = json.loads((directory / "summary.json").read_text(encoding="utf-8"))
-        return ProgramSolution(mesh.points[:, :2], *fields.values(), summary)
+        triangles, indicator = mesh.cells_dict["triangle"], np.ravel(mesh.cell_data["error_indicator"][0])
+        return ProgramSolution(mesh.points[:, :2], triangles, indicator, *fields.values(), summary)
 
     def _run(self, *arguments: str) -> None:
         command = [str(self.executable), *arguments]

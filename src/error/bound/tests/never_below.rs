@@ -148,7 +148,13 @@ fn of_displacements_that_do_not_solve_the_problem() {
     let loose = SolverOptions { tolerance: 1e-2, polish: false, ..SolverOptions::default() };
     let early = SolverOptions { max_iterations: Some(1), ..SolverOptions::default() };
     let solvers = || -> Vec<Box<dyn ContactSolver>> {
-        vec![Box::new(ActiveSet), Box::new(Multigrid), Box::new(QpSolver::new(Clarabel))]
+        vec![
+            Box::new(ActiveSet),
+            Box::new(Multigrid),
+            Box::new(QpSolver::new(Clarabel)),
+            #[cfg(feature = "osqp")]
+            Box::new(QpSolver::new(crate::qp::Osqp)),
+        ]
     };
     let mut of_solvers = Vec::new();
     for options in [&loose, &early] {
