@@ -75,15 +75,8 @@ pub(super) struct Settled {
 /// Solves for the contact set `active`, and repairs it until it is consistent.
 pub(super) fn settle(d: &Discretization, active: Vec<bool>, limits: &Limits) -> Result<Settled, NotFactored> {
     let decoupled = Decoupled::new(d);
-    let interior = d.interior();
-    let lifted = |load: &dyn Fn(usize) -> f64, height: &dyn Fn(usize) -> f64| -> Vec<f64> {
-        interior.iter().map(|&a| load(a) - d.stiffness_row(a, height)).collect()
-    };
-    // `height` is zero inside, so these are `b - K_IB g`.
-    let gap_load = lifted(&|a| decoupled.gap_load(a), &|b| d.height()[b]);
-    let sum_load = lifted(&|a| decoupled.sum_load(a), &|b| decoupled.sum_height(b));
-    let terms = interior.iter().map(|&a| decoupled.gap_load_terms(a)).collect();
-    let mut half = Obstacle::new(d.interior_stiffness(), gap_load, terms, d.scales().displacement)?;
+    let mut half = gap_half(d, &decoupled)?;
+    let sum_load = lifted(d, |a| decoupled.sum_load(a), |b| decoupled.sum_height(b));
     let (gap, status, repairs) = half.settle(active, limits)?;
     let s = half.without_obstacle(&sum_load)?;
     let over_vertices = |unknowns: &[f64]| d.extend(unknowns, |_| 0.0);
@@ -94,4 +87,16 @@ pub(super) fn settle(d: &Discretization, active: Vec<bool>, limits: &Limits) -> 
         repairs,
         status,
     })
+}
+
+/// The obstacle half on the unknowns of the discretization.
+fn gap_half<'d>(d: &'d Discretization, decoupled: &Decoupled) -> Result<Obstacle<'d>, NotFactored> {
+    let load = lifted(d, |a| decoupled.gap_load(a), |b| d.height()[b]);
+    let terms = d.interior().iter().map(|&a| decoupled.gap_load_terms(a)).collect();
+    Obstacle::new(d.interior_stiffness(), load, terms, d.scales().displacement)
+}
+
+/// `b - K_IB g` for a `height` that is zero inside.
+fn lifted(d: &Discretization, load: impl Fn(usize) -> f64, height: impl Fn(usize) -> f64) -> Vec<f64> {
+    d.interior().iter().map(|&a| load(a) - d.stiffness_row(a, &height)).collect()
 }

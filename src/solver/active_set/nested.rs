@@ -10,7 +10,8 @@ use crate::solver::hierarchy::{Hierarchy, Level};
 
 /// A guess of the contact set over the unknowns, and the factorisations on each of the coarser levels.
 ///
-/// A vertex is guessed to touch when all of its parents do: a guess that is rather too small is repaired in fewer steps.
+/// Slight gaps below zero are overlooked there: the next level decides on them anew. A vertex is guessed to touch when all of
+/// its parents do: a guess that is rather too small is repaired in fewer steps.
 pub(super) fn guess_from_coarser_levels(
     d: &Discretization,
     limits: &Limits,
@@ -27,7 +28,7 @@ pub(super) fn guess_from_coarser_levels(
         let b: Vec<f64> = rows.iter().map(|&i| load[i]).collect();
         let active = rows.iter().map(|&i| touches[i]).collect();
         let mut half = Obstacle::new(&k, b.clone(), b, d.scales().displacement)?;
-        let (gap, _, repairs) = half.settle(active, limits)?;
+        let (gap, _, repairs) = half.settle_roughly(active, limits)?;
         factorizations.push(repairs + 1);
         let mut on_level = vec![false; touches.len()];
         for (&i, y) in rows.iter().zip(&gap.y) {

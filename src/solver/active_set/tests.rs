@@ -1,9 +1,10 @@
 use sprs::{CsMat, TriMat};
 
+use super::obstacle::SLIGHT;
 use super::*;
 use crate::action::certify;
 use crate::mesh::samples::irregular;
-use crate::mesh::{Pattern, rectangle};
+use crate::mesh::{Bisection, Mesh, Pattern, l_shape, rectangle};
 use crate::problem::{Case, ContactProblem, Function};
 
 /// Factorisations on a level that nested iteration needs at most.
@@ -13,6 +14,12 @@ const TOLERANCE: f64 = 1e-8;
 
 /// Rounding of solutions of size one.
 const ROUNDING: f64 = 1e-12;
+
+/// Bisections towards a corner that halve the mesh size there each.
+const DEEP: usize = 22;
+
+/// A distance from the corner within which gaps are below [`SLIGHT`].
+const TIP: f64 = 1e-6;
 
 fn dense(entries: &[[f64; 3]; 3]) -> CsMat<f64> {
     let mut triplets = TriMat::new((3, 3));
@@ -34,7 +41,7 @@ fn cycles(k: &CsMat<f64>, b: &[f64], start: &[bool]) -> bool {
     while !seen.contains(&active) {
         seen.push(active.clone());
         let gap = half.solve(&active).unwrap();
-        let wrong = half.wrong(&active, &gap);
+        let wrong = half.wrong(&active, &gap, 0.0);
         if wrong.is_empty() {
             return false;
         }
@@ -94,11 +101,47 @@ fn biactive_data_and_obtuse_triangles_are_solved() {
     // A long thin rectangle in square cells' place: obtuse once it is sheared.
     let flat = rectangle([0.0, 0.0], [1.0, 1.0], [20; 2], Pattern::Right).unwrap();
     let sheared = flat.points().iter().map(|&[x, y]| [x + 3.0 * y, y]).collect();
-    let mesh = crate::mesh::Mesh::new(sheared, flat.triangles().to_vec()).unwrap();
+    let mesh = Mesh::new(sheared, flat.triangles().to_vec()).unwrap();
     let problem = ContactProblem::builder().tension(1.0, 2.0).load(-30.0, 10.0).height(0.1).build().unwrap();
     let d = Discretization::new(&problem, &mesh).unwrap();
     let positive = d.stiffness().iter().filter(|&(&k, (i, j))| i != j && k > 0.1).count();
     assert!(positive > 100, "K is no M-matrix");
     let found = ActiveSet.solve(&d, &SolverOptions::default()).unwrap();
     assert!(certify(&d, found, TOLERANCE).is_ok());
+}
+
+/// An L-shape whose triangles at the re-entrant corner are bisected again and again.
+fn bisected_at_the_corner(steps: usize) -> Mesh {
+    let mut bisection = Bisection::new(l_shape(1.0, 2, Pattern::Right).unwrap());
+    for _ in 0..steps {
+        let mesh = bisection.mesh();
+        let at_corner = |t: &usize| mesh.corners(*t).contains(&[0.0; 2]);
+        let marked: Vec<usize> = (0..mesh.triangles().len()).filter(at_corner).collect();
+        bisection.refine(&marked).unwrap();
+    }
+    bisection.mesh().clone()
+}
+
+#[test]
+fn contact_is_found_at_the_tip_of_a_deep_mesh() {
+    let problem = ContactProblem::builder().tension(1.0, 3.0).load(-10.0, 10.0).height(0.0).build().unwrap();
+    let with_ancestry = bisected_at_the_corner(DEEP);
+    let without = Mesh::new(with_ancestry.points().to_vec(), with_ancestry.triangles().to_vec()).unwrap();
+    for mesh in [with_ancestry, without] {
+        let d = Discretization::new(&problem, &mesh).unwrap();
+        let found = ActiveSet.solve(&d, &SolverOptions::default()).unwrap();
+        let solution = certify(&d, found, TOLERANCE).expect("certified");
+        assert!(d.interior().iter().all(|&a| solution.contact()[a]), "the load closes the gap everywhere");
+        // Vertices near the tip that are left out pass through by less than a rounded displacement, but not by rounding.
+        let near = |a: usize| mesh.points()[a][0].hypot(mesh.points()[a][1]) < TIP;
+        let active: Vec<bool> = d.interior().iter().map(|&a| !near(a)).collect();
+        let mut half = gap_half(&d, &Decoupled::new(&d)).unwrap();
+        let gap = half.solve(&active).unwrap();
+        assert!(half.wrong(&active, &gap, SLIGHT * d.scales().displacement).is_empty());
+        assert!(!half.wrong(&active, &gap, 0.0).is_empty());
+        let cut = settle(&d, active, &Limits { steps: 1, deadline: None }).unwrap();
+        let statistics = Statistics::of("cut");
+        let cut = Candidate { displacement: cut.displacement, multiplier: cut.multiplier, statistics };
+        assert!(certify(&d, cut, TOLERANCE).is_err(), "it is no solution");
+    }
 }
