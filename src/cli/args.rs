@@ -105,16 +105,16 @@ pub(super) struct ConvergeArguments {
 pub(super) struct AdaptArguments {
     #[command(flatten)]
     pub(super) case: CaseArguments,
-    /// Guaranteed relative error in the energy norm to reach
+    /// Guaranteed relative error to reach
     #[arg(long, value_name = "T", default_value = "0.01", value_parser = tolerance, allow_negative_numbers = true)]
     pub(super) tolerance: f64,
-    /// Stop before the mesh has more vertices
+    /// Most vertices of a mesh
     #[arg(long, value_name = "N", default_value = "1000000", value_parser = at_least(3))]
     pub(super) max_vertices: usize,
-    /// Stop before this run has taken so many seconds
+    /// Most seconds of this run
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     pub(super) time_limit: Option<f64>,
-    /// Stop before so many GiB are needed [default: what is free]
+    /// Most GiB of memory [default: all that is free]
     #[arg(long, value_name = "GIB", value_parser = positive, allow_negative_numbers = true)]
     pub(super) memory_limit: Option<f64>,
     /// Solver: auto, multigrid, active-set, clarabel, osqp
