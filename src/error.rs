@@ -15,6 +15,7 @@ pub use residual::residual_indicators;
 
 use thiserror::Error;
 
+use crate::discretization::Discretization;
 use crate::mesh::MeshError;
 
 /// The error of a solution cannot be measured.
@@ -46,4 +47,16 @@ pub enum MeasureError {
         /// The limit.
         iterations: usize,
     },
+}
+
+impl MeasureError {
+    /// Refuses vectors that are not over the vertices of `d`.
+    fn check<V: AsRef<[f64]>>(d: &Discretization, vectors: impl IntoIterator<Item = V>) -> Result<(), Self> {
+        let vertices = d.mesh().points().len();
+        let mut lengths = vectors.into_iter().map(|values| values.as_ref().len());
+        match lengths.find(|&values| values != vertices) {
+            Some(values) => Err(Self::OtherMesh { values, vertices }),
+            None => Ok(()),
+        }
+    }
 }

@@ -35,6 +35,7 @@ pub use refine::Refinement;
 pub use structured::{Pattern, disk, l_shape, rectangle};
 
 pub(crate) use adjacency::{HalfEdges, VertexTriangles};
+pub(crate) use circle::Circle;
 #[cfg(feature = "cli")]
 pub(crate) use generate::MAX_VERTICES;
 
@@ -84,6 +85,12 @@ impl Mesh {
     /// The area of triangle `t`, positive.
     pub fn triangle_area(&self, t: usize) -> f64 {
         0.5 * twice_signed_area(self.corners(t))
+    }
+
+    /// The square of the diameter `h_K` of triangle `t`, its longest edge.
+    pub(crate) fn diameter_sq(&self, t: usize) -> f64 {
+        let corners = self.corners(t);
+        (0..3).map(|i| distance_sq(corners[i], corners[(i + 1) % 3])).fold(0.0, f64::max)
     }
 
     /// The area of the domain `|omega|`.

@@ -70,17 +70,6 @@ pub struct BoundParts {
 }
 
 impl BoundParts {
-    /// The parts with their names.
-    pub fn named(&self) -> [(&'static str, f64); 5] {
-        [
-            ("flux", self.flux),
-            ("oscillation", self.oscillation),
-            ("contact", self.contact),
-            ("boundary", self.boundary),
-            ("algebraic", self.algebraic),
-        ]
-    }
-
     /// All that a finer mesh makes smaller, a tighter tolerance does not.
     pub fn discretization(&self) -> f64 {
         self.flux.hypot(self.contact) + self.oscillation + self.boundary
@@ -103,11 +92,8 @@ impl ErrorBound {
         d: &Discretization,
         displacement: &[Vec<f64>; 2],
     ) -> Result<Self, MeasureError> {
-        let vertices = d.mesh().points().len();
-        if let Some(u) = displacement.iter().find(|u| u.len() != vertices) {
-            return Err(MeasureError::OtherMesh { values: u.len(), vertices });
-        }
-        let around = VertexTriangles::new(vertices, d.mesh().triangles());
+        MeasureError::check(d, displacement)?;
+        let around = VertexTriangles::new(d.mesh().points().len(), d.mesh().triangles());
         let push = Push::new(d, displacement, &around);
         let cells = Cells {
             d,
@@ -156,11 +142,6 @@ impl ErrorBound {
     pub fn relative(&self) -> Option<f64> {
         let least = self.energy_norm - self.total;
         (least > 0.0).then(|| self.total / least)
-    }
-
-    /// The bound over the true energy error.
-    pub fn effectivity(&self, error: f64) -> f64 {
-        self.total / error
     }
 }
 

@@ -88,10 +88,7 @@ impl ErrorNorms {
         rule: &CutRule,
         exact: &ExactSolution,
     ) -> Result<Self, MeasureError> {
-        let (values, vertices) = (fields.lambda.len(), d.mesh().points().len());
-        if values != vertices {
-            return Err(MeasureError::OtherMesh { values, vertices });
-        }
+        MeasureError::check(d, [fields.lambda])?;
         let sub = SubTriangulation::new(d.mesh())?;
         let [sums, shallow] = integrate(d.mesh(), &sub, fields, rule, exact);
         let lambda_dual = dual_norm(d, &sub, rule, LIFT_REFINEMENTS, |t, [x, y]| {
@@ -122,12 +119,9 @@ pub fn energy_error(
     displacement: &[Vec<f64>; 2],
     exact: &ExactSolution,
 ) -> Result<f64, MeasureError> {
-    let vertices = d.mesh().points().len();
-    if let Some(u) = displacement.iter().find(|u| u.len() != vertices) {
-        return Err(MeasureError::OtherMesh { values: u.len(), vertices });
-    }
+    MeasureError::check(d, displacement)?;
     let sub = SubTriangulation::new(d.mesh())?;
-    let fields = Fields { displacement, lambda: &vec![0.0; vertices] };
+    let fields = Fields { displacement, lambda: &vec![0.0; d.mesh().points().len()] };
     let [sums, _] = integrate(d.mesh(), &sub, fields, &cut_rule(exact, DEPTH), exact);
     Ok(sums.energy(exact.tension()))
 }

@@ -23,24 +23,21 @@ pub fn residual_indicators(
     displacement: &[Vec<f64>; 2],
     lambda: &[f64],
 ) -> Result<Vec<f64>, MeasureError> {
-    let (mesh, vertices) = (d.mesh(), d.mesh().points().len());
-    let lengths = [displacement[0].len(), displacement[1].len(), lambda.len()];
-    if let Some(&values) = lengths.iter().find(|&&values| values != vertices) {
-        return Err(MeasureError::OtherMesh { values, vertices });
-    }
+    MeasureError::check(d, [&displacement[0], &displacement[1], lambda])?;
+    let mesh = d.mesh();
+    let half_edges = HalfEdges::new(mesh.points().len(), mesh.triangles());
     let mut indicators = vec![0.0; mesh.triangles().len()];
     for (i, push) in [1.0, -1.0].into_iter().enumerate() {
         let mu = d.tension()[i];
         for (k, indicator) in indicators.iter_mut().enumerate() {
-            let (corners, area) = (mesh.corners(k), mesh.triangle_area(k));
-            let edge_sq = (0..3).map(|j| distance_sq(corners[j], corners[(j + 1) % 3]));
+            let area = mesh.triangle_area(k);
             let mean = d.moments[i].on(mesh, k).integrals.iter().sum::<f64>() / area;
             let residual_sq = |&a: &usize| area / 3.0 * (mean + push * lambda[a]).powi(2);
             let on_wedges = mesh.triangles()[k].iter().map(residual_sq).sum::<f64>();
-            *indicator += edge_sq.fold(0.0, f64::max) / mu * on_wedges;
+            *indicator += mesh.diameter_sq(k) / mu * on_wedges;
         }
         let slope = |k: usize| gradient(mesh.corners(k), mesh.triangles()[k].map(|a| displacement[i][a]));
-        for (a, b, sides) in HalfEdges::new(vertices, mesh.triangles()).edges() {
+        for (a, b, sides) in half_edges.edges() {
             let [one, other] = sides else { continue };
             let (p, q) = (slope(one.triangle), slope(other.triangle));
             // Along the edge, the slopes are the same.

@@ -5,14 +5,14 @@ use crate::problem::Domain;
 
 /// The boundary of a disk.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Circle {
-    centre: [f64; 2],
-    radius: f64,
+pub(crate) struct Circle {
+    pub(crate) centre: [f64; 2],
+    pub(crate) radius: f64,
 }
 
 impl Circle {
     /// That of a domain which is a disk.
-    pub(super) fn of_domain(domain: &Domain) -> Option<Self> {
+    pub(crate) fn of_domain(domain: &Domain) -> Option<Self> {
         match *domain {
             Domain::Disk { centre, radius } => Some(Self { centre, radius }),
             _ => None,

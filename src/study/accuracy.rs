@@ -82,9 +82,7 @@ pub fn solve_bounded(
         let candidate = solver.solve(d, &SolverOptions { tolerance, ..options.clone() })?;
         let solution = certify(d, candidate, tolerance)
             .map_err(|rejected| AccuracyError::Rejected(rejected, tolerance))?;
-        let start = Instant::now();
-        let bound = ErrorBound::new(problem, domain, d, solution.displacement())?;
-        Ok(Bounded { solution, bound, tolerance, bound_seconds: start.elapsed().as_secs_f64() })
+        Ok(Bounded::new(problem, domain, d, solution, tolerance)?)
     };
     let Tolerance::Fixed(tolerance) = tolerance else {
         let mut bounded = at(LOOSEST, solver, options)?;
@@ -103,6 +101,19 @@ pub fn solve_bounded(
 }
 
 impl Bounded {
+    /// Bounds the error of a solution that is certified within `tolerance`.
+    pub(super) fn new(
+        problem: &ContactProblem,
+        domain: Option<&Domain>,
+        d: &Discretization,
+        solution: ContactSolution,
+        tolerance: f64,
+    ) -> Result<Self, MeasureError> {
+        let start = Instant::now();
+        let bound = ErrorBound::new(problem, domain, d, solution.displacement())?;
+        Ok(Self { solution, bound, tolerance, bound_seconds: start.elapsed().as_secs_f64() })
+    }
+
     /// The tolerance with which the solver would leave a small fraction; `None` when it leaves no more already.
     fn tighter(&self) -> Option<f64> {
         let allowed = FRACTION * self.bound.parts.discretization();

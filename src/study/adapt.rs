@@ -13,7 +13,7 @@ use crate::error::{ErrorBound, energy_error, residual_indicators};
 use crate::mesh::{Bisection, Mesh};
 use crate::problem::{ContactProblem, Domain, ExactSolution};
 use crate::qp::Status;
-use crate::solver::{Candidate, ContactSolver, SolverOptions, Statistics};
+use crate::solver::{Candidate, ContactSolver, SolverOptions, StartingPoint, Statistics};
 
 /// The fraction of the squared error in the triangles that are marked.
 const FRACTION: f64 = 0.5;
@@ -30,14 +30,8 @@ pub struct AdaptiveStudy {
     options: SolverOptions,
     tolerance: Tolerance,
     marked: Vec<Vec<usize>>,
-    last: Option<Solved>,
-}
-
-/// The solution on the current mesh.
-struct Solved {
-    solution: ContactSolution,
-    bound: ErrorBound,
-    tolerance: f64,
+    /// The solution on the current mesh.
+    last: Option<Bounded>,
 }
 
 /// One level: a mesh and the error on it. Written as a row of `adapt.csv`.
@@ -164,8 +158,7 @@ impl AdaptiveStudy {
             .map_err(|error| StudyError::at(level, error))?;
         let seconds = start.elapsed().as_secs_f64();
         let row = self.row(&d, &bounded, seconds)?;
-        let Bounded { solution, bound, tolerance, .. } = bounded;
-        self.last = Some(Solved { solution, bound, tolerance });
+        self.last = Some(bounded);
         Ok(row)
     }
 
@@ -234,13 +227,12 @@ impl AdaptiveStudy {
         if displacement.iter().chain([&lambda]).any(|values| values.len() != vertices) {
             return Ok(false);
         }
-        let multiplier = d.interior().iter().map(|&a| lambda[a] * d.dual_area()[a]).collect();
+        let StartingPoint { displacement, multiplier } = Fields { displacement, lambda }.into_start(&d);
         let statistics = Statistics { status: Status::Unknown, ..Statistics::of(self.solver.name()) };
         let Ok(solution) = certify(&d, Candidate { displacement, multiplier, statistics }, tolerance) else {
             return Ok(false);
         };
-        let bound = ErrorBound::new(&self.problem, self.domain.as_ref(), &d, solution.displacement())?;
-        self.last = Some(Solved { solution, bound, tolerance });
+        self.last = Some(Bounded::new(&self.problem, self.domain.as_ref(), &d, solution, tolerance)?);
         self.marked = marked;
         self.bisection = bisection;
         Ok(true)

@@ -8,7 +8,6 @@ use super::trace::Trace;
 use crate::discretization::Discretization;
 use crate::fem::{ElementMoments, gradient};
 use crate::flux::WedgeFluxes;
-use crate::mesh::distance_sq;
 
 /// Triangles that are summed together.
 const BLOCK: usize = 4096;
@@ -118,9 +117,7 @@ impl Cells<'_> {
     /// `||f_i - p||_K`, with the affine `p` that has the same shares, and `||p - f_a||_K`, which is
     /// `(5/3 sum_a |K|/3 (f_a - f_K)^2)^(1/2)`.
     fn oscillation(&self, k: usize) -> [f64; 2] {
-        let (corners, area) = (self.d.mesh().corners(k), self.d.mesh().triangle_area(k));
-        let edge_sq = [0, 1, 2].map(|j| distance_sq(corners[j], corners[(j + 1) % 3]));
-        let diameter = edge_sq.into_iter().fold(0.0, f64::max).sqrt();
+        let (diameter, area) = (self.d.mesh().diameter_sq(k).sqrt(), self.d.mesh().triangle_area(k));
         [0, 1].map(|i: usize| {
             let ElementMoments { integrals, deviation } = self.d.moments[i].on(self.d.mesh(), k);
             let mean = integrals.iter().sum::<f64>() / area;

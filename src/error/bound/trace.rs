@@ -2,7 +2,7 @@
 
 use crate::discretization::Discretization;
 use crate::flux::WedgeFluxes;
-use crate::mesh::{Mesh, VertexKind, VertexTriangles, distance_sq};
+use crate::mesh::{Circle, Mesh, VertexKind, VertexTriangles, distance_sq};
 use crate::problem::{ContactProblem, Domain, Function};
 
 /// A boundary vertex lies on the circle up to this fraction of the radius: rounding of its coordinates.
@@ -33,12 +33,6 @@ pub(super) struct Trace<'a> {
     circle: Option<Circle>,
 }
 
-#[derive(Debug, Clone, Copy)]
-struct Circle {
-    centre: [f64; 2],
-    radius: f64,
-}
-
 /// A lift `E` of the data between the vertices.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Lift {
@@ -66,10 +60,6 @@ impl<'a> Trace<'a> {
         d: &'a Discretization,
         around: &'a VertexTriangles,
     ) -> Self {
-        let circle = match domain {
-            Some(&Domain::Disk { centre, radius }) => Some(Circle { centre, radius }),
-            _ => None,
-        };
         let has_its_boundary_on = |circle: &Circle| {
             let mut kinds = d.mesh().points().iter().zip(d.mesh().kind());
             kinds.all(|(&point, &kind)| {
@@ -77,7 +67,7 @@ impl<'a> Trace<'a> {
                 kind != VertexKind::Boundary || off <= ON_CIRCLE * circle.radius
             })
         };
-        let circle = circle.filter(has_its_boundary_on);
+        let circle = domain.and_then(Circle::of_domain).filter(has_its_boundary_on);
         Self { problem, mesh: d.mesh(), around, height_h: d.height(), circle }
     }
 
