@@ -1,6 +1,6 @@
 //! The wedges `D_a cap K` around each vertex, in order.
 
-use crate::mesh::SubTriangulation;
+use crate::mesh::{Mesh, VertexTriangles};
 
 /// Wedges that follow one another counterclockwise around a vertex: around an interior one they close, at a boundary
 /// vertex there is one fan for each sector of the domain.
@@ -12,60 +12,87 @@ pub(super) struct Fan {
     pub(super) closed: bool,
 }
 
-/// All fans; each wedge is in one of them. Linear time.
-pub(super) fn fans(sub: &SubTriangulation) -> Vec<Fan> {
-    let following = following(sub);
-    let mut is_first = vec![true; following.len()];
-    following.iter().flatten().for_each(|&w| is_first[w] = false);
-    let mut seen = vec![false; following.len()];
-    let firsts = (0..following.len()).filter(|&w| is_first[w]);
-    // What is not seen from a first wedge lies in a fan without one.
-    let starts = firsts.map(|w| (w, false)).chain((0..following.len()).map(|w| (w, true)));
-    let mut fans = Vec::new();
-    for (start, closed) in starts {
-        let mut wedges = Vec::new();
-        let mut wedge = Some(start);
-        while let Some(w) = wedge.filter(|&w| !seen[w]) {
-            seen[w] = true;
-            wedges.push(w);
-            wedge = following[w];
-        }
-        if !wedges.is_empty() {
-            fans.push(Fan { wedges, closed });
-        }
+/// All fans; each wedge is in one of them. Linear time, but for sorting the triangles around each vertex.
+pub(super) fn fans(mesh: &Mesh) -> Vec<Fan> {
+    let around = VertexTriangles::new(mesh.points().len(), mesh.triangles());
+    let (mut walk, mut sides, mut fans) = (Walk::default(), Vec::new(), Vec::new());
+    for a in 0..mesh.points().len() {
+        let triangles = around.of(a);
+        sides.clear();
+        sides.extend(triangles.iter().map(|&k| corner_of(mesh, k, a).1));
+        walk.fans(&sides, |fan, closed| {
+            let wedge = |&place: &usize| 3 * triangles[place] + corner_of(mesh, triangles[place], a).0;
+            fans.push(Fan { wedges: fan.iter().map(wedge).collect(), closed });
+        });
     }
     fans
 }
 
-/// The next wedge counterclockwise around the same vertex; none at the boundary.
-fn following(sub: &SubTriangulation) -> Vec<Option<usize>> {
-    let triangles = sub.mesh().triangles();
-    let vertex = |w: usize| sub.vertex_of(2 * w);
-    let wedges = 0..triangles.len() / 2;
-    // At a midpoint begins one wedge at either end of the edge.
-    let mut beginning = vec![[None; 2]; sub.mesh().points().len()];
-    for w in wedges.clone() {
-        let [_, midpoint, _] = triangles[2 * w];
-        let [one, other] = &mut beginning[midpoint];
-        *(if one.is_none() { one } else { other }) = Some(w);
+/// Which corner of triangle `k` vertex `a` is, and the two others counterclockwise.
+pub(super) fn corner_of(mesh: &Mesh, k: usize, a: usize) -> (usize, [usize; 2]) {
+    let triangle = mesh.triangles()[k];
+    let corner = triangle.iter().position(|&b| b == a).expect("a is a corner of the triangles around it");
+    (corner, [1, 2].map(|j| triangle[(corner + j) % 3]))
+}
+
+/// Memory for walks around vertices.
+#[derive(Default)]
+pub(super) struct Walk {
+    /// The first corner after the vertex and the number of the wedge, sorted: so successors are found.
+    by_next: Vec<(usize, usize)>,
+    is_first: Vec<bool>,
+    seen: Vec<bool>,
+    /// One fan, counterclockwise.
+    fan: Vec<usize>,
+}
+
+impl Walk {
+    /// Calls `each(fan, closed)` for the fans of a vertex. A fan is given by the numbers of its wedges, a wedge by the two corners
+    /// of its triangle that follow the vertex counterclockwise.
+    pub(super) fn fans(&mut self, sides: &[[usize; 2]], mut each: impl FnMut(&[usize], bool)) {
+        let Self { by_next, is_first, seen, fan } = self;
+        by_next.clear();
+        by_next.extend(sides.iter().enumerate().map(|(k, &[next, _])| (next, k)));
+        // The few around a vertex are sorted by insertion.
+        by_next.sort_unstable();
+        let following = |k: usize| {
+            let found = by_next.binary_search_by_key(&sides[k][1], |&(next, _)| next);
+            found.ok().map(|place| by_next[place].1)
+        };
+        is_first.clear();
+        is_first.resize(sides.len(), true);
+        seen.clear();
+        seen.resize(sides.len(), false);
+        (0..sides.len()).filter_map(following).for_each(|k| is_first[k] = false);
+        // What is not seen from a first wedge lies in a fan without one.
+        for closed in [false, true] {
+            for start in 0..sides.len() {
+                if seen[start] || !(closed || is_first[start]) {
+                    continue;
+                }
+                fan.clear();
+                let mut wedge = Some(start);
+                while let Some(k) = wedge.filter(|&k| !seen[k]) {
+                    seen[k] = true;
+                    fan.push(k);
+                    wedge = following(k);
+                }
+                each(fan, closed);
+            }
+        }
     }
-    let next = |w: usize| {
-        let [_, _, midpoint] = triangles[2 * w + 1];
-        beginning[midpoint].into_iter().flatten().find(|&next| vertex(next) == vertex(w))
-    };
-    wedges.map(next).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::VertexKind;
     use crate::mesh::samples::{irregular, renumbered, square, square_without};
-    use crate::mesh::{Mesh, VertexKind};
 
     /// The fans of a mesh, and the vertex of each.
     fn fans_of(mesh: &Mesh) -> Vec<(usize, Fan)> {
-        let sub = SubTriangulation::new(mesh).unwrap();
-        fans(&sub).into_iter().map(|fan| (sub.vertex_of(2 * fan.wedges[0]), fan)).collect()
+        let vertex = |w: usize| mesh.triangles()[w / 3][w % 3];
+        fans(mesh).into_iter().map(|fan| (vertex(fan.wedges[0]), fan)).collect()
     }
 
     #[test]

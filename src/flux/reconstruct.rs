@@ -26,7 +26,7 @@ impl<'a> Reconstructor<'a> {
         let triangles = d.mesh().triangles().len();
         assert_eq!(sub.mesh().triangles().len(), 6 * triangles, "six sub-triangles a triangle");
         assert!(load.iter().all(|load| load.len() == triangles), "loads are over triangles");
-        Self { d, sub, load, fans: fans(sub) }
+        Self { d, sub, load, fans: fans(d.mesh()) }
     }
 
     /// `[t_1h, t_2h]` for the displacements `[u1, u2]` over vertices.

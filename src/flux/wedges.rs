@@ -6,6 +6,7 @@
 
 use rayon::prelude::*;
 
+use super::fan::{Walk, corner_of};
 use super::field::through;
 use super::reconstruct::flux_on;
 use crate::discretization::Discretization;
@@ -79,9 +80,6 @@ impl Products {
 /// A wedge while its fan is worked on.
 #[derive(Debug, Clone, Copy)]
 struct Wedge {
-    /// The corner of the triangle after the vertex, and the one before.
-    next: usize,
-    last: usize,
     area: f64,
     load: [f64; 2],
     flux: [[f64; 2]; 2],
@@ -160,9 +158,15 @@ impl<'a> WedgeFluxes<'a> {
 impl Data<'_> {
     /// The changes around one vertex, written to its row.
     fn of_vertex(&self, a: usize, patch: &mut Patch, row: &mut [[Change; 2]]) {
-        patch.wedges.clear();
-        patch.wedges.extend(self.around.of(a).iter().map(|&k| self.wedge(a, k)));
-        patch.fans(|wedges, fan, closed| {
+        let Patch { wedges, sides, walk } = patch;
+        wedges.clear();
+        sides.clear();
+        for &k in self.around.of(a) {
+            let (corner, [next, last]) = corner_of(self.mesh, k, a);
+            wedges.push(self.wedge(k, corner, [a, next, last]));
+            sides.push([next, last]);
+        }
+        walk.fans(sides, |fan, closed| {
             for (membrane, sign) in [1.0, -1.0].into_iter().enumerate() {
                 let action = (!closed).then_some(sign * self.lambda[a]);
                 equilibrate(wedges, fan, action, membrane, row);
@@ -170,15 +174,11 @@ impl Data<'_> {
         });
     }
 
-    fn wedge(&self, a: usize, k: usize) -> Wedge {
-        let triangle = self.mesh.triangles()[k];
-        let corner = triangle.iter().position(|&b| b == a).expect("a is a corner of the triangles around it");
-        let [next, last] = [1, 2].map(|j| triangle[(corner + j) % 3]);
-        let [p, q, r] = [a, next, last].map(|b| self.mesh.points()[b]);
+    /// The wedge at a corner of triangle `k`, whose corners are given from there.
+    fn wedge(&self, k: usize, corner: usize, corners: [usize; 3]) -> Wedge {
+        let [p, q, r] = corners.map(|b| self.mesh.points()[b]);
         let Element { area, flux } = self.elements[k];
         Wedge {
-            next,
-            last,
             area: area / 3.0,
             load: [0, 1].map(|i: usize| self.load[i].on(self.mesh, k).integrals[corner]),
             flux,
@@ -188,54 +188,12 @@ impl Data<'_> {
     }
 }
 
-/// Memory for the wedges around a vertex.
+/// Memory for the wedges around a vertex, in the order of its triangles.
 #[derive(Default)]
 struct Patch {
-    /// In the order of the triangles around the vertex.
     wedges: Vec<Wedge>,
-    /// The corner after the vertex and the number of the wedge, sorted: so successors are found.
-    by_next: Vec<(usize, usize)>,
-    is_first: Vec<bool>,
-    seen: Vec<bool>,
-    /// One fan, counterclockwise.
-    fan: Vec<usize>,
-}
-
-impl Patch {
-    /// Calls `each(wedges, fan, closed)` for the fans of a vertex: one that closes around an interior vertex, one for each sector of
-    /// the domain at a boundary vertex. A fan is given by the numbers of its wedges.
-    fn fans(&mut self, mut each: impl FnMut(&[Wedge], &[usize], bool)) {
-        let Self { wedges, by_next, is_first, seen, fan } = self;
-        by_next.clear();
-        by_next.extend(wedges.iter().enumerate().map(|(k, wedge)| (wedge.next, k)));
-        // The few around a vertex are sorted by insertion.
-        by_next.sort_unstable();
-        let following = |k: usize| {
-            let found = by_next.binary_search_by_key(&wedges[k].last, |&(next, _)| next);
-            found.ok().map(|place| by_next[place].1)
-        };
-        is_first.clear();
-        is_first.resize(wedges.len(), true);
-        seen.clear();
-        seen.resize(wedges.len(), false);
-        (0..wedges.len()).filter_map(following).for_each(|k| is_first[k] = false);
-        // What is not seen from a first wedge lies in a fan without one.
-        for closed in [false, true] {
-            for start in 0..wedges.len() {
-                if seen[start] || !(closed || is_first[start]) {
-                    continue;
-                }
-                fan.clear();
-                let mut wedge = Some(start);
-                while let Some(k) = wedge.filter(|&k| !seen[k]) {
-                    seen[k] = true;
-                    fan.push(k);
-                    wedge = following(k);
-                }
-                each(wedges, fan, closed);
-            }
-        }
-    }
+    sides: Vec<[usize; 2]>,
+    walk: Walk,
 }
 
 /// Balances each wedge of a fan, and chooses the circulation next to `-mu_i grad u_ih`. The action `-(-1)^i lambda_a` is given
