@@ -27,7 +27,7 @@ pub use bisect::Bisection;
 pub use check::MeshError;
 pub use dual::{DualMesh, SubTriangulation};
 pub use family::MeshFamily;
-pub use generate::{GenerateError, MeshSize, generate};
+pub use generate::{GenerateError, MeshSize, estimated_vertices, generate};
 pub use polygon::polygon;
 pub use quality::MeshQuality;
 pub use read::ReadError;

@@ -14,7 +14,7 @@ mod vtu;
 
 pub use checkpoint::{read_checkpoint, write_checkpoint};
 pub use dual::write_dual_vtu;
-pub use file::{WriteSeek, write_atomically};
+pub use file::{FileSet, WriteSeek, discard_unfinished, prepare_folder, remove, write_atomically};
 pub use flux::write_flux_vtu;
 pub use mesh_picture::{MeshPicture, MeshPictureError, render_mesh, render_triangulation};
 pub use rates_picture::{

@@ -14,6 +14,7 @@ mod spelling;
 
 pub use cases::{Case, CaseError, ExactSolution, Interface, Parameter, Range};
 pub use domain::Domain;
+pub(crate) use domain::ring_area;
 pub use expression::{Expression, ExpressionError};
 pub use function::Function;
 

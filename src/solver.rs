@@ -15,6 +15,9 @@ pub use multigrid::Multigrid;
 pub use polish::PolishReport;
 pub use qp_solver::QpSolver;
 
+use std::time::{Duration, Instant};
+
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::discretization::Discretization;
@@ -40,7 +43,8 @@ pub struct SolverOptions {
     pub tolerance: f64,
     /// Where to stop at the latest; `None`: the solver's own limit.
     pub max_iterations: Option<usize>,
-    /// Seconds after which to stop; `None`: no limit.
+    /// Seconds after which to stop; `None`: no limit. Solvers look at the clock between their steps, of which a factorisation or
+    /// the set-up of all levels is one.
     pub time_limit: Option<f64>,
     /// Whether to make the result exact by solving for its contact set.
     pub polish: bool,
@@ -55,6 +59,11 @@ impl Default for SolverOptions {
 }
 
 impl SolverOptions {
+    /// When to stop a solve that has begun at `start`.
+    pub(crate) fn deadline(&self, start: Instant) -> Option<Instant> {
+        self.time_limit.map(|seconds| start + Duration::from_secs_f64(seconds))
+    }
+
     pub(crate) fn check(&self) -> Result<(), SolverError> {
         if !(self.tolerance > 0.0 && self.tolerance < 1.0) {
             return Err(SolverError::Tolerance(self.tolerance));
@@ -115,7 +124,7 @@ impl StartingPoint {
 }
 
 /// How a candidate was found.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Statistics {
     /// The solver's name.
     pub solver: String,
@@ -130,9 +139,11 @@ pub struct Statistics {
     pub energies: Vec<f64>,
     /// Which solver was chosen and why, when that was left open.
     pub choice: Option<String>,
-    /// Seconds spent before the first iteration.
+    /// Seconds spent before the first iteration. Not kept with the rest: they are another number in each run.
+    #[serde(skip)]
     pub setup_seconds: f64,
-    /// Seconds spent iterating, the polish included.
+    /// Seconds spent iterating, the polish included. Likewise.
+    #[serde(skip)]
     pub solve_seconds: f64,
     /// What the polish did; `None` when it was not asked for or has nothing to do.
     pub polish: Option<PolishReport>,

@@ -41,7 +41,7 @@ pub fn certify(
 pub struct Rejected {
     /// What is wrong.
     pub reason: Reason,
-    /// All residuals; `None` when the vectors have the wrong lengths.
+    /// All residuals; `None` when there are no vectors, or such of the wrong lengths.
     pub residuals: Option<Residuals>,
     /// How the candidate was found.
     pub statistics: Statistics,
@@ -63,4 +63,14 @@ pub enum Reason {
     /// The vectors do not belong to the discretization.
     #[error("its vectors do not have one entry for each vertex and each unknown")]
     Lengths,
+    /// There is no candidate.
+    #[error("it has not come back within its time")]
+    NoResult,
+}
+
+impl Rejected {
+    /// Of a solver that was not waited for any longer.
+    pub fn without_result(statistics: Statistics) -> Self {
+        Self { reason: Reason::NoResult, residuals: None, statistics }
+    }
 }

@@ -6,12 +6,15 @@ use std::path::Path;
 use std::time::Instant;
 
 use super::args::AdaptArguments;
-use super::levels::{Levels, failure, origin};
-use super::memory;
+use super::case_file::BackendName;
+use super::clock::Clock;
+use super::levels::{GOES_ON, KEPT, Levels, MEMORY, TIME, failure, origin};
+use super::memory::Memory;
 use super::progress::Progress;
-use super::setup::{Setup, make_folder, options, solver, write_file};
+use super::setup::{Results, Setup, make_folder, options, solver, write_file};
 use super::solve::{PICTURE as MEMBRANES, SOLUTION, SUMMARY, write_solution};
 use super::terminal::{grouped, print};
+use super::watch::Watch;
 use super::{CaseFile, Failure};
 use crate::discretization::Discretization;
 use crate::mesh::{DualMesh, MeshError, SubTriangulation};
@@ -33,10 +36,13 @@ const OPTIMAL: [f64; 1] = [-0.5];
 /// How much larger the next mesh is taken to be while only one is known.
 const GROWTH: f64 = 2.0;
 
-/// Bytes that a run needs for each vertex: 2292 at 1.3 million, files and pictures included.
-const BYTES_PER_VERTEX: f64 = 2500.0;
+/// The solution of the last level, the ancestry of the mesh and its bisections come on top of what a solve needs: 2292 bytes a
+/// vertex at 1.3 million in place of 890.
+const MORE_MEMORY: f64 = 2.6;
 
-const GIB: f64 = (1u64 << 30) as f64;
+/// Seconds that writing the results takes: two pictures, and what grows with the mesh.
+const WRITING: f64 = 1.0;
+const WRITING_PER_VERTEX: f64 = 4e-6;
 
 /// Why a run ends.
 enum Stop {
@@ -47,40 +53,50 @@ enum Stop {
     TooSmall(MeshError),
 }
 
-pub(super) fn run(arguments: &AdaptArguments) -> Result<(), Failure> {
-    let start = Instant::now();
+pub(super) fn run(arguments: &AdaptArguments, watch: &Watch) -> Result<(), Failure> {
+    let clock = Clock::new(arguments.time_limit);
     let progress = Progress::new(arguments.case.quiet);
     let mut setup = Setup::new(&arguments.case, &progress)?;
     if let Some(backend) = arguments.backend {
         setup.case.solver.backend = backend;
     }
     let folder = arguments.case.output_folder(arguments.out.as_ref());
-    make_folder(&folder)?;
+    setup.check_memory(setup.case.solver.backend)?;
+    make_folder(&folder, watch, KEPT)?;
     let kept = Levels { folder: &folder, table: TABLE, origin: ORIGIN };
     let origin = origin(&arguments.case, setup.case.solver.backend, &setup.text);
     let mut levels: Vec<AdaptiveLevel> = kept.so_far(&origin)?;
-    let mut study = study(&setup);
     progress.stage("going on from the last level");
-    let resumed = resume(&mut study, &folder, levels.len()).map_err(|error| failure(&setup.name, &error))?;
+    let (mut study, resumed) = resumed(&setup, &folder, levels.len())?;
     levels.truncate(resumed);
 
-    let limits = Limits::new(arguments, start);
+    let limits = Limits::new(arguments, clock, &setup);
+    clock.watch(watch, &setup.name);
+    let mut seconds = levels.last().map_or(0.0, |last| last.solve_seconds + last.bound_seconds);
     let stop = loop {
-        if let Some(stop) = limits.stop(&levels) {
+        if let Some(stop) = limits.stop(&levels, seconds) {
             break stop;
         }
+        let start = Instant::now();
         progress.stage(stage(&levels));
+        study.set_time_limit(clock.of_solver(setup.case.solver.time_limit));
         match study.next_level() {
             Ok(level) => levels.push(level),
             Err(StudyError::Mesh(error @ MeshError::TooSmall { .. })) => break Stop::TooSmall(error),
+            Err(error) if clock.has_stopped(&error) => break Stop::Time,
             Err(error) => return Err(failure(&setup.name, &error)),
         }
         kept.write(&levels)?;
         if let Some(checkpoint) = study.checkpoint() {
             write_file(&folder.join(CHECKPOINT), |out| write_checkpoint(&checkpoint, out))?;
         }
+        seconds = start.elapsed().as_secs_f64();
     };
+    watch.lift();
     progress.stage("writing the results");
+    if study.solution().is_none() {
+        (study, _) = self::resumed(&setup, &folder, levels.len())?;
+    }
     write_results(&folder, &setup.case, &study, &levels)?;
     drop(progress);
     if !arguments.case.quiet {
@@ -102,38 +118,41 @@ fn study(setup: &Setup) -> AdaptiveStudy {
     )
 }
 
-/// Brings the study to the last of `levels` known levels that its checkpoint belongs to; returns how many that are.
-fn resume(study: &mut AdaptiveStudy, folder: &Path, levels: usize) -> Result<usize, StudyError> {
+/// The study at the last of `levels` known levels that its checkpoint belongs to, and how many levels that are.
+fn resumed(setup: &Setup, folder: &Path, levels: usize) -> Result<(AdaptiveStudy, usize), Failure> {
+    let mut study = study(setup);
     let file = File::open(folder.join(CHECKPOINT));
     // Without a checkpoint, or with one that is broken or of other levels, the run starts anew.
-    let Ok(Ok(checkpoint)) = file.map(|file| read_checkpoint(BufReader::new(file))) else { return Ok(0) };
+    let Ok(Ok(checkpoint)) = file.map(|file| read_checkpoint(BufReader::new(file))) else {
+        return Ok((study, 0));
+    };
     let known = checkpoint.marked.len() + 1;
-    Ok(if known <= levels && study.resume(checkpoint)? { known } else { 0 })
+    let fits = known <= levels && study.resume(checkpoint).map_err(|error| failure(&setup.name, &error))?;
+    Ok((study, if fits { known } else { 0 }))
 }
 
 /// What the run may take.
 struct Limits {
     tolerance: f64,
     vertices: f64,
-    bytes: f64,
-    seconds: f64,
-    start: Instant,
+    memory: Memory,
+    backend: BackendName,
+    clock: Clock,
 }
 
 impl Limits {
-    fn new(arguments: &AdaptArguments, start: Instant) -> Self {
-        let asked = arguments.memory_limit.map(|limit| limit * GIB);
+    fn new(arguments: &AdaptArguments, clock: Clock, setup: &Setup) -> Self {
         Self {
             tolerance: arguments.tolerance,
             vertices: arguments.max_vertices as f64,
-            bytes: asked.or_else(memory::available).unwrap_or(f64::INFINITY),
-            seconds: arguments.time_limit.unwrap_or(f64::INFINITY),
-            start,
+            memory: setup.memory,
+            backend: setup.case.solver.backend,
+            clock,
         }
     }
 
-    /// Whether to stop, judging from how the levels have grown.
-    fn stop(&self, levels: &[AdaptiveLevel]) -> Option<Stop> {
+    /// Whether to stop, judging from how the levels have grown and how many seconds the last one has taken.
+    fn stop(&self, levels: &[AdaptiveLevel], seconds: f64) -> Option<Stop> {
         let last = levels.last()?;
         if last.relative_bound.is_some_and(|relative| relative <= self.tolerance) {
             return Some(Stop::Reached);
@@ -143,12 +162,12 @@ impl Limits {
             _ => GROWTH,
         };
         let vertices = growth * last.vertices as f64;
-        let seconds = self.start.elapsed().as_secs_f64() + growth * (last.solve_seconds + last.bound_seconds);
+        let seconds = growth * seconds + WRITING + WRITING_PER_VERTEX * vertices;
         if vertices > self.vertices {
             Some(Stop::Vertices)
-        } else if BYTES_PER_VERTEX * vertices > self.bytes {
+        } else if !self.memory.suffices(self.backend, MORE_MEMORY * vertices) {
             Some(Stop::Memory)
-        } else if seconds > self.seconds {
+        } else if !self.clock.allows(seconds) {
             Some(Stop::Time)
         } else {
             None
@@ -181,16 +200,16 @@ fn write_results(
     let failed = |name: &str, error: &dyn std::fmt::Display| Failure::Input(format!("{name}: {error}"));
     let mesh = study.mesh();
     let d = Discretization::new(study.problem(), mesh).map_err(|error| failed(&case.title, &error))?;
-    write_solution(folder, &case.title, &d, solution, bound)?;
+    let mut results = Results::new(folder);
+    write_solution(&mut results, &case.title, &d, solution, bound)?;
     let seconds = Seconds { bound: last.bound_seconds, ..Seconds::default() };
     let summary = Summary::new(&case.title, &d, last.tolerance, Ok(solution), seconds, Some(bound));
-    write_file(&folder.join(SUMMARY), |out| summary.write(out))?;
 
     let sub = SubTriangulation::new(mesh).map_err(|error| failed(MESH, &error))?;
     let dual = DualMesh::new(mesh, &sub);
     let picture = MeshPicture { title: &case.title, mesh, dual: &dual, contact: Some(solution.contact()) };
     let png = render_triangulation(&picture).map_err(|error| failed(MESH, &error))?;
-    write_file(&folder.join(MESH), |out| out.write_all(&png))?;
+    results.write(MESH, |out| out.write_all(&png))?;
 
     let png = render_rates(&RatesPicture {
         title: &case.title,
@@ -204,7 +223,9 @@ fn write_results(
         slopes: &OPTIMAL,
     });
     let png = png.map_err(|error| failed(PICTURE, &error))?;
-    write_file(&folder.join(PICTURE), |out| out.write_all(&png))
+    results.write(PICTURE, |out| out.write_all(&png))?;
+    results.write(SUMMARY, |out| summary.write(out))?;
+    results.publish()
 }
 
 /// What is not known cannot be drawn.
@@ -251,13 +272,13 @@ fn verdict(
                 grouped(arguments.max_vertices)
             )
         }
-        Stop::Time => "the next level would exceed the time limit (--time-limit)".into(),
-        Stop::Memory => "the next level would need more memory than there is (--memory-limit)".into(),
+        Stop::Time => TIME.into(),
+        Stop::Memory => MEMORY.into(),
         Stop::TooSmall(error) => error.to_string(),
     };
     let relative = percent(levels.last().and_then(|level| level.relative_bound));
     let goal = percent(Some(arguments.tolerance));
     Err(Failure::NotCertified(format!(
-        "{name}: stopped at a guaranteed relative error of {relative}, above {goal}: {why}; a run with a higher limit goes on from here"
+        "{name}: stopped at a guaranteed relative error of {relative}, above {goal}: {why}; {GOES_ON}"
     )))
 }

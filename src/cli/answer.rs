@@ -6,6 +6,7 @@ use std::path::Path;
 
 use super::Failure;
 use super::setup::{Setup, make_folder, write_file};
+use super::watch::Watch;
 use crate::action::{ContactSolution, Rejected, certify};
 use crate::discretization::Discretization;
 use crate::output::{Seconds, Summary};
@@ -27,6 +28,7 @@ pub(super) fn judge(
     file: &Path,
     out: Option<&Path>,
     seconds: Seconds,
+    watch: &Watch,
 ) -> Result<Result<ContactSolution, Box<Rejected>>, Failure> {
     let refused = |error: &dyn std::fmt::Display| Failure::Input(format!("{}: {error}", file.display()));
     let opened = File::open(file)
@@ -37,7 +39,7 @@ pub(super) fn judge(
     let tolerance = setup.case.solver.tolerance.or_default();
     let result = certify(d, Candidate::from_answer(d, answer, statistics), tolerance);
     if let Some(folder) = out {
-        make_folder(folder)?;
+        make_folder(folder, watch, "it is as it was")?;
         let verdict = result.as_ref().map_err(|rejected| rejected.as_ref());
         let summary = Summary::new(&setup.case.title, d, tolerance, verdict, seconds, None);
         write_file(&folder.join(SUMMARY), |out| summary.write(out))?;

@@ -60,13 +60,16 @@ pub(super) struct SolveArguments {
     /// Folder for the results [default: out/CASE]
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
-    /// Largest relative residual, or auto: as the error allows
+    /// Most seconds the solver may take
+    #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
+    pub(super) time_limit: Option<f64>,
+    /// Largest relative residual, or auto
     #[arg(long, value_name = "T", value_parser = tolerance_or_auto, allow_negative_numbers = true)]
     pub(super) tolerance: Option<Tolerance>,
     /// Leave the backend's answer as it is
     #[arg(long)]
     pub(super) no_polish: bool,
-    /// Also write the dual mesh: dual.vtu, flux.vtu, mesh.png
+    /// Also write dual.vtu, flux.vtu, mesh.png
     #[arg(long)]
     pub(super) dual: bool,
 }
@@ -81,7 +84,7 @@ pub(super) struct CheckArguments {
     /// Folder for the summary.json of the answer
     #[arg(long, value_name = "DIR", requires = "answer")]
     pub(super) out: Option<PathBuf>,
-    /// Largest relative residual, in place of the case file's
+    /// Largest relative residual, not the case file's
     #[arg(long, value_name = "T", value_parser = tolerance, allow_negative_numbers = true)]
     pub(super) tolerance: Option<f64>,
 }
@@ -90,9 +93,12 @@ pub(super) struct CheckArguments {
 pub(super) struct ConvergeArguments {
     #[command(flatten)]
     pub(super) case: CaseArguments,
-    /// Number of meshes, each refined once more
+    /// Meshes, each refined once more
     #[arg(long, value_name = "N", default_value_t = 5)]
     pub(super) levels: usize,
+    /// Most seconds of this run
+    #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
+    pub(super) time_limit: Option<f64>,
     /// Solver: auto, multigrid, active-set, clarabel, osqp
     #[arg(long, value_name = "NAME")]
     pub(super) backend: Option<BackendName>,
@@ -114,9 +120,6 @@ pub(super) struct AdaptArguments {
     /// Most seconds of this run
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     pub(super) time_limit: Option<f64>,
-    /// Most GiB of memory [default: all that is free]
-    #[arg(long, value_name = "GIB", value_parser = positive, allow_negative_numbers = true)]
-    pub(super) memory_limit: Option<f64>,
     /// Solver: auto, multigrid, active-set, clarabel, osqp
     #[arg(long, value_name = "NAME")]
     pub(super) backend: Option<BackendName>,
@@ -196,6 +199,9 @@ pub(super) struct CaseArguments {
     /// Further uniform refinements of the mesh
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = refinements, allow_negative_numbers = true)]
     pub(super) refine: u32,
+    /// Most GiB of memory [default: all that is free]
+    #[arg(long, value_name = "GIB", value_parser = positive, allow_negative_numbers = true)]
+    pub(super) memory_limit: Option<f64>,
     /// No output on the terminal but errors
     #[arg(long, short)]
     pub(super) quiet: bool,

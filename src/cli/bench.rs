@@ -9,8 +9,9 @@ use super::Failure;
 use super::args::{BenchArguments, CaseArguments, output_folder};
 use super::case_file::BackendName;
 use super::progress::Progress;
-use super::setup::{Setup, check_refinements, make_folder, solver};
+use super::setup::{Setup, check_vertices, make_folder, solver};
 use super::terminal::{grouped, print};
+use super::watch::Watch;
 use crate::discretization::Discretization;
 use crate::mesh::{MAX_VERTICES, Mesh};
 use crate::problem::ContactProblem;
@@ -21,9 +22,9 @@ use files::{read_rows, write_results, write_rows};
 /// Where results go without a case file and without `--out`.
 const FAMILY: &str = "bench";
 
-pub(super) fn run(arguments: &BenchArguments) -> Result<(), Failure> {
+pub(super) fn run(arguments: &BenchArguments, watch: &Watch) -> Result<(), Failure> {
     let progress = Progress::new(arguments.quiet);
-    let mut bench = Bench::new(arguments, &progress)?;
+    let mut bench = Bench::new(arguments, &progress, watch)?;
     match &arguments.case {
         _ if arguments.no_run => bench.run_nothing()?,
         None => bench.run_family(&arguments.sizes)?,
@@ -52,11 +53,12 @@ struct Bench<'a> {
     rows: Vec<Row>,
     measured: usize,
     progress: &'a Progress,
+    watch: &'a Watch,
 }
 
 impl<'a> Bench<'a> {
     /// Reads the rows of other files and makes the folder: what can fail does so before anything is measured.
-    fn new(arguments: &BenchArguments, progress: &'a Progress) -> Result<Self, Failure> {
+    fn new(arguments: &BenchArguments, progress: &'a Progress, watch: &'a Watch) -> Result<Self, Failure> {
         let mut rows = Vec::new();
         for path in &arguments.merge {
             rows.extend(read_rows(path)?);
@@ -84,7 +86,12 @@ impl<'a> Bench<'a> {
             rows,
             measured: 0,
             progress,
+            watch,
         })
+    }
+
+    fn make_folder(&self) -> Result<(), Failure> {
+        make_folder(&self.folder, self.watch, "what was measured so far is in bench.csv")
     }
 
     fn comparison(&self) -> Comparison {
@@ -93,7 +100,7 @@ impl<'a> Bench<'a> {
     }
 
     fn run_nothing(&self) -> Result<(), Failure> {
-        make_folder(&self.folder)?;
+        self.make_folder()?;
         write_rows(&self.folder, &self.rows)
     }
 
@@ -108,7 +115,7 @@ impl<'a> Bench<'a> {
             return Err(bad_input(&message));
         }
         let problem = square_problem().map_err(|error| bad_input(&error))?;
-        make_folder(&self.folder)?;
+        self.make_folder()?;
         self.progress.steps(sizes.len() * self.solvers.len());
         let mut comparison = self.comparison();
         for n in sizes {
@@ -121,14 +128,15 @@ impl<'a> Bench<'a> {
     /// A case on its mesh and its refinements.
     fn run_case(&mut self, path: PathBuf, bench: &BenchArguments) -> Result<(), Failure> {
         let levels = bench.levels;
-        let arguments = CaseArguments { path, refine: 0, quiet: false };
+        let arguments = CaseArguments { path, refine: 0, memory_limit: None, quiet: false };
         let Setup { name, case, mut family, .. } = Setup::new(&arguments, self.progress)?;
-        check_refinements(&name, &family, levels - 1)?;
+        let finest = family.mesh().points().len() as f64 * 4f64.powf((levels - 1) as f64);
+        check_vertices(&name, levels - 1, finest)?;
         self.title.clone_from(&case.title);
         self.options.tolerance = bench.tolerance.unwrap_or(case.solver.tolerance.or_default());
         let stem = arguments.path.file_stem().unwrap_or(arguments.path.as_os_str());
         let stem = stem.to_string_lossy();
-        make_folder(&self.folder)?;
+        self.make_folder()?;
         self.progress.steps(levels * self.solvers.len());
         let mut comparison = self.comparison();
         for level in 0..levels {

@@ -5,6 +5,7 @@ use super::case_file::BackendName;
 use super::progress::Progress;
 use super::setup::{Setup, options, solver};
 use super::terminal::{grouped, print};
+use super::watch::Watch;
 use super::{Failure, SolverSettings, answer};
 use crate::action::{ContactSolution, Rejected, Residuals, certify};
 use crate::discretization::Discretization;
@@ -25,18 +26,23 @@ struct Column {
     result: Result<ContactSolution, Box<Rejected>>,
 }
 
-pub(super) fn run(arguments: &CheckArguments) -> Result<(), Failure> {
+pub(super) fn run(arguments: &CheckArguments, watch: &Watch) -> Result<(), Failure> {
     let progress = Progress::new(arguments.case.quiet);
     let mut setup = Setup::new(&arguments.case, &progress)?;
     if let Some(tolerance) = arguments.tolerance {
         setup.case.solver.tolerance = Tolerance::Fixed(tolerance);
+    }
+    if arguments.answer.is_none() {
+        for backend in backends() {
+            setup.check_memory(backend)?;
+        }
     }
     let (d, seconds) = setup.discretize(&progress)?;
     let (columns, remedy) = match &arguments.answer {
         None => (columns_of_backends(&setup, &d, &progress)?, ""),
         Some(file) => {
             progress.stage("judging the answer");
-            let result = answer::judge(&setup, &d, file, arguments.out.as_deref(), seconds)?;
+            let result = answer::judge(&setup, &d, file, arguments.out.as_deref(), seconds, watch)?;
             let heading = [answer::NAME.into(), AS_IT_IS.into()];
             (vec![Column { heading, must_certify: true, result }], answer::REMEDY)
         }
@@ -63,15 +69,18 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<(), Failure> {
     }
 }
 
+/// All of this build; the choice among them is one of them.
+fn backends() -> impl Iterator<Item = BackendName> {
+    BackendName::ALL.into_iter().filter(|backend| backend.is_built() && *backend != BackendName::Auto)
+}
+
 fn columns_of_backends(
     setup: &Setup,
     d: &Discretization,
     progress: &Progress,
 ) -> Result<Vec<Column>, Failure> {
     let mut columns = Vec::new();
-    // The choice among them is one of them.
-    let shown = |backend: &BackendName| backend.is_built() && *backend != BackendName::Auto;
-    for backend in BackendName::ALL.into_iter().filter(shown) {
+    for backend in backends() {
         let ways = if backend.is_polished() { [true, false].as_slice() } else { &[true] };
         for &polish in ways {
             let settings = SolverSettings { backend, polish, ..setup.case.solver.clone() };

@@ -4,10 +4,14 @@ use std::path::Path;
 
 use super::Failure;
 use super::args::ConvergeArguments;
-use super::levels::{Levels, failure, origin};
+use super::case_file::BackendName;
+use super::clock::Clock;
+use super::levels::{GOES_ON, KEPT, Levels, MEMORY, TIME, failure, origin};
+use super::memory::Memory;
 use super::progress::Progress;
 use super::setup::{Setup, make_folder, options, solver, write_file};
 use super::terminal::{grouped, print};
+use super::watch::Watch;
 use crate::output::{RatesPicture, Series, render_rates};
 use crate::study::{ConvergenceStudy, LevelErrors, MEASURES, fitted_rate, markdown, rate};
 
@@ -19,7 +23,11 @@ const SLOPES: [f64; 4] = [0.5, 1.0, 1.5, 2.0];
 /// What the levels belong to.
 const ORIGIN: &str = "converge.toml";
 
-pub(super) fn run(arguments: &ConvergeArguments) -> Result<(), Failure> {
+/// Each refinement makes four times as many triangles, and our solvers need time in proportion.
+const GROWTH: f64 = 4.0;
+
+pub(super) fn run(arguments: &ConvergeArguments, watch: &Watch) -> Result<(), Failure> {
+    let clock = Clock::new(arguments.time_limit);
     let progress = Progress::new(arguments.case.quiet);
     let mut setup = Setup::new(&arguments.case, &progress)?;
     let Some(exact) = setup.case.exact.take() else {
@@ -30,38 +38,79 @@ pub(super) fn run(arguments: &ConvergeArguments) -> Result<(), Failure> {
     if let Some(backend) = arguments.backend {
         setup.case.solver.backend = backend;
     }
+    let backend = setup.case.solver.backend;
+    setup.check_memory(backend)?;
     let folder = arguments.case.output_folder(arguments.out.as_ref());
-    make_folder(&folder)?;
+    make_folder(&folder, watch, KEPT)?;
     let kept = Levels { folder: &folder, table: LEVELS, origin: ORIGIN };
-    let origin = origin(&arguments.case, setup.case.solver.backend, &setup.text);
+    let origin = origin(&arguments.case, backend, &setup.text);
     let mut levels: Vec<LevelErrors> = kept.so_far(&origin)?;
     levels.truncate(arguments.levels);
 
     let settings = &setup.case.solver;
-    let solver = solver(settings.backend);
+    let solver = solver(backend);
     let mut study = ConvergenceStudy::new(exact, setup.family, solver, options(settings), settings.tolerance)
         .map_err(|error| failure(&setup.name, &error))?;
     let known = levels.len();
+    let mut stop = None;
+    clock.watch(watch, &setup.name);
     if known < arguments.levels {
         progress.steps(arguments.levels);
         for level in 0..arguments.levels {
             progress.stage(format!("level {} of {}", level + 1, arguments.levels));
-            if level < known {
-                study.skip_level().map_err(|error| failure(&setup.name, &error))?;
-            } else {
-                levels.push(study.next_level().map_err(|error| failure(&setup.name, &error))?);
-                kept.write(&levels)?;
-                write_file(&folder.join(TABLE), |out| out.write_all(markdown(&levels).as_bytes()))?;
+            stop = why_stop(&clock, setup.memory, backend, levels.get(..level).and_then(<[_]>::last));
+            if stop.is_some() {
+                break;
+            }
+            study.set_time_limit(clock.of_solver(settings.time_limit));
+            let next =
+                if level < known { study.skip_level().map(|()| None) } else { study.next_level().map(Some) };
+            match next {
+                Ok(None) => {}
+                Ok(Some(level)) => {
+                    levels.push(level);
+                    kept.write(&levels)?;
+                    write_file(&folder.join(TABLE), |out| out.write_all(markdown(&levels).as_bytes()))?;
+                }
+                Err(error) if clock.has_stopped(&error) => {
+                    stop = Some(TIME);
+                    break;
+                }
+                Err(error) => return Err(failure(&setup.name, &error)),
             }
             progress.step();
         }
     }
+    watch.lift();
     write_picture(&folder, &setup.case.title, &levels)?;
     drop(progress);
     if !arguments.case.quiet {
         print(&table(&setup.case.title, &levels, &folder))?;
     }
-    Ok(())
+    stop.map_or(Ok(()), |why| {
+        let (done, of) = (levels.len(), arguments.levels);
+        Err(Failure::NotCertified(format!(
+            "{}: stopped after {done} of {of} levels: {why}; {GOES_ON}",
+            setup.name
+        )))
+    })
+}
+
+/// Why not to begin the level after `last`, judging from that one.
+fn why_stop(
+    clock: &Clock,
+    memory: Memory,
+    backend: BackendName,
+    last: Option<&LevelErrors>,
+) -> Option<&'static str> {
+    let last = last?;
+    if !clock.allows(GROWTH * (last.solve_seconds + last.norm_seconds)) {
+        Some(TIME)
+    } else if !memory.suffices(backend, GROWTH * last.vertices as f64) {
+        Some(MEMORY)
+    } else {
+        None
+    }
 }
 
 /// The errors against the mesh size.

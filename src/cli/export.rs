@@ -5,15 +5,16 @@ use super::args::{ExportArguments, Format};
 use super::progress::Progress;
 use super::setup::{Setup, make_folder, write_file};
 use super::terminal::print;
+use super::watch::Watch;
 use crate::qp::{QpPart, contact_qp, write_matrix_market, write_npz, write_qps};
 
-pub(super) fn run(arguments: &ExportArguments) -> Result<(), Failure> {
+pub(super) fn run(arguments: &ExportArguments, watch: &Watch) -> Result<(), Failure> {
     let progress = Progress::new(arguments.case.quiet);
     let setup = Setup::new(&arguments.case, &progress)?;
     let (d, _) = setup.discretize(&progress)?;
     let qp = contact_qp(&d);
     let folder = arguments.case.output_folder(arguments.out.as_ref());
-    make_folder(&folder)?;
+    make_folder(&folder, watch, "files that are there are whole")?;
     progress.stage("writing the quadratic program");
     let mut written = Vec::new();
     let mut path = |name: String| {

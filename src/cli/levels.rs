@@ -14,6 +14,23 @@ use crate::study::StudyError;
 
 const VERSION: &str = concat!("membranes ", env!("CARGO_PKG_VERSION"));
 
+/// What an interrupted run has to say of its folder.
+pub(super) const KEPT: &str = "complete levels are kept, and the same command goes on from there";
+
+/// What a run that stops short has to say.
+pub(super) const GOES_ON: &str = "a run with a higher limit goes on from here";
+
+/// Why a run stops short.
+pub(super) const TIME: &str = "the next level would exceed the time limit (--time-limit)";
+pub(super) const MEMORY: &str = "the next level would need more memory than there is (--memory-limit)";
+
+/// What to say when a solver does not come back in time.
+pub(super) fn too_late(name: &str) -> Failure {
+    Failure::NotCertified(format!(
+        "{name}: the time was over within a level; {KEPT}, given more time (--time-limit)"
+    ))
+}
+
 /// The levels of a study, a row of a table for each, and what they belong to: a run of another case file, solver or first mesh
 /// starts anew.
 pub(super) struct Levels<'a> {

@@ -5,12 +5,14 @@ use std::time::Instant;
 
 use super::args::CaseArguments;
 use super::case_file::{BackendName, CaseFile, MeshSource};
+use super::memory::Memory;
 use super::progress::Progress;
 use super::terminal::grouped;
+use super::watch::Watch;
 use super::{Failure, SolverSettings};
 use crate::discretization::Discretization;
-use crate::mesh::{MAX_VERTICES, Mesh, MeshFamily, ReadError, generate};
-use crate::output::{Seconds, WriteSeek, write_atomically};
+use crate::mesh::{MAX_VERTICES, Mesh, MeshFamily, ReadError, estimated_vertices, generate};
+use crate::output::{FileSet, Seconds, WriteSeek, prepare_folder, write_atomically};
 use crate::qp::Clarabel;
 use crate::solver::{ActiveSet, Auto, ContactSolver, Multigrid, QpSolver, SolverOptions};
 
@@ -22,6 +24,7 @@ pub(super) struct Setup {
     pub(super) case: CaseFile,
     pub(super) family: MeshFamily,
     pub(super) seconds: Seconds,
+    pub(super) memory: Memory,
 }
 
 impl Setup {
@@ -32,9 +35,15 @@ impl Setup {
         let case = CaseFile::parse(&name, &text, &arguments.path)?;
         progress.stage("making the mesh");
         let start = Instant::now();
-        let family = make_mesh(&name, &case, arguments.refine as usize)?;
+        let memory = Memory::new(arguments.memory_limit);
+        let family = make_mesh(&name, &case, arguments.refine as usize, memory)?;
         let seconds = Seconds { mesh: start.elapsed().as_secs_f64(), ..Seconds::default() };
-        Ok(Self { name, text, case, family, seconds })
+        Ok(Self { name, text, case, family, seconds, memory })
+    }
+
+    /// Refuses a solver that needs more memory on this mesh than there is.
+    pub(super) fn check_memory(&self, backend: BackendName) -> Result<(), Failure> {
+        self.memory.check(&self.name, backend, self.family.mesh().points().len() as f64)
     }
 
     /// Assembles the discrete problem, and says how long it took.
@@ -48,14 +57,26 @@ impl Setup {
 }
 
 /// The coarse mesh of the case and its refinements.
-fn make_mesh(name: &str, case: &CaseFile, further: usize) -> Result<MeshFamily, Failure> {
+fn make_mesh(name: &str, case: &CaseFile, further: usize, memory: Memory) -> Result<MeshFamily, Failure> {
     let bad_mesh =
         |error: &dyn std::fmt::Display| Failure::Input(format!("{name}: [mesh], [domain]: {error}"));
+    let refinements = case.refine.saturating_add(further);
+    // Each refinement makes four times as many; of all solvers, this one needs the least.
+    let check = |vertices: f64| {
+        let vertices = vertices * 4f64.powf(refinements as f64);
+        check_vertices(name, refinements, vertices)?;
+        memory.check(name, BackendName::Multigrid, vertices)
+    };
     let mut family = match &case.mesh {
         MeshSource::File(path) => {
             MeshFamily::polygonal(Mesh::read_gmsh(path).map_err(|error| cannot_read(name, path, &error))?)
         }
         MeshSource::Generator { domain, size, grading } => {
+            let vertices = estimated_vertices(domain, *size);
+            // What is no mesh at all, the generator refuses.
+            if vertices <= MAX_VERTICES {
+                check(vertices)?;
+            }
             let mesh = generate(domain, *size).map_err(|error| bad_mesh(&error))?;
             match *grading {
                 Some((point, exponent)) => {
@@ -65,8 +86,7 @@ fn make_mesh(name: &str, case: &CaseFile, further: usize) -> Result<MeshFamily, 
             }
         }
     };
-    let refinements = case.refine.saturating_add(further);
-    check_refinements(name, &family, refinements)?;
+    check(family.mesh().points().len() as f64)?;
     for _ in 0..refinements {
         family.refine().map_err(|error| bad_mesh(&error))?;
     }
@@ -74,9 +94,8 @@ fn make_mesh(name: &str, case: &CaseFile, further: usize) -> Result<MeshFamily, 
 }
 
 /// Refuses refinements that lead beyond what can be stored.
-pub(super) fn check_refinements(name: &str, family: &MeshFamily, refinements: usize) -> Result<(), Failure> {
-    // Each refinement makes four times as many.
-    if family.mesh().points().len() as f64 * 4f64.powf(refinements as f64) <= MAX_VERTICES {
+pub(super) fn check_vertices(name: &str, refinements: usize, vertices: f64) -> Result<(), Failure> {
+    if vertices <= MAX_VERTICES {
         return Ok(());
     }
     Err(Failure::Input(format!(
@@ -119,9 +138,38 @@ pub(super) fn options(settings: &SolverSettings) -> SolverOptions {
     }
 }
 
-/// Makes the folder for results.
-pub(super) fn make_folder(folder: &Path) -> Result<(), Failure> {
-    std::fs::create_dir_all(folder).map_err(|error| cannot_write(folder, &error))
+/// Makes the folder for results: that nothing can be written there is said before anything is computed. `says` is what an
+/// interrupted run has to say of it.
+pub(super) fn make_folder(folder: &Path, watch: &Watch, says: &'static str) -> Result<(), Failure> {
+    prepare_folder(folder).map_err(|error| cannot_write(folder, &error))?;
+    watch.folder(folder, says);
+    Ok(())
+}
+
+/// The files of a result, which appear together, the summary last.
+pub(super) struct Results<'f> {
+    folder: &'f Path,
+    files: FileSet,
+}
+
+impl<'f> Results<'f> {
+    pub(super) fn new(folder: &'f Path) -> Self {
+        Self { folder, files: FileSet::new(folder) }
+    }
+
+    pub(super) fn write(
+        &mut self,
+        name: &str,
+        write: impl FnOnce(&mut (dyn WriteSeek + '_)) -> std::io::Result<()>,
+    ) -> Result<(), Failure> {
+        self.files
+            .write(Path::new(name), write)
+            .map_err(|error| cannot_write(&self.folder.join(name), &error))
+    }
+
+    pub(super) fn publish(self) -> Result<(), Failure> {
+        self.files.publish().map_err(|error| cannot_write(self.folder, &error))
+    }
 }
 
 /// Writes a result, whole or not at all.

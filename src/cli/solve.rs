@@ -7,17 +7,21 @@ use super::Failure;
 use super::args::SolveArguments;
 use super::case_file::CaseFile;
 use super::progress::Progress;
-use super::setup::{Setup, make_folder, options, solver, write_file};
+use super::setup::{Results, Setup, make_folder, options, solver};
 use super::terminal::{fields, grouped, print};
-use crate::action::ContactSolution;
+use super::watch::Watch;
+use crate::action::{ContactSolution, Reason, Rejected};
 use crate::discretization::Discretization;
 use crate::error::ErrorBound;
 use crate::fem::element_loads;
 use crate::flux::{Reconstruction, Reconstructor};
 use crate::mesh::{DualMesh, SubTriangulation};
 use crate::output::picture::{Picture, render};
-use crate::output::{MeshPicture, Seconds, Summary, render_mesh, write_dual_vtu, write_flux_vtu, write_vtu};
-use crate::solver::PolishReport;
+use crate::output::{
+    MeshPicture, Seconds, Summary, remove, render_mesh, write_dual_vtu, write_flux_vtu, write_vtu,
+};
+use crate::qp::Status;
+use crate::solver::{PolishReport, Statistics};
 use crate::study::{AccuracyError, Bounded, solve_bounded};
 
 /// The files that hold a solution: present only when it is certified.
@@ -29,14 +33,18 @@ const DUAL: &str = "dual.vtu";
 const MESH_PICTURE: &str = "mesh.png";
 const FLUX: &str = "flux.vtu";
 
-pub(super) fn run(arguments: &SolveArguments) -> Result<(), Failure> {
+/// What an interrupted run has to say.
+const UNTOUCHED: &str = "it is as it was";
+
+pub(super) fn run(arguments: &SolveArguments, watch: &Watch) -> Result<(), Failure> {
     let progress = Progress::new(arguments.case.quiet);
     let mut setup = Setup::new(&arguments.case, &progress)?;
     override_settings(&mut setup, arguments);
     let settings = &setup.case.solver;
-    let (d, seconds) = setup.discretize(&progress)?;
+    setup.check_memory(settings.backend)?;
     let folder = arguments.case.output_folder(arguments.out.as_ref());
-    make_folder(&folder)?;
+    let (d, seconds) = setup.discretize(&progress)?;
+    make_folder(&folder, watch, UNTOUCHED)?;
 
     progress.stage(format!(
         "{} solves for {} unknowns",
@@ -45,23 +53,25 @@ pub(super) fn run(arguments: &SolveArguments) -> Result<(), Failure> {
     ));
     let options = options(settings);
     let problem = &setup.case.problem;
-    let mut solver = solver(settings.backend);
     let domain = setup.case.domain();
+    let mut solver = watch.over(solver(settings.backend), too_late(&setup, &d, &folder, seconds));
     let result = solve_bounded(problem, domain, &d, &mut *solver, &options, settings.tolerance);
-
     let title = &setup.case.title;
+
     match result {
         Ok(Bounded { solution, bound, tolerance, bound_seconds }) => {
             progress.stage("writing the results");
             let start = Instant::now();
-            write_solution(&folder, title, &d, &solution, &bound)?;
+            let mut results = Results::new(&folder);
+            write_solution(&mut results, title, &d, &solution, &bound)?;
             if arguments.dual {
-                write_dual(&folder, &setup.case, &d, &solution)?;
+                write_dual(&mut results, &setup.case, &d, &solution)?;
             }
             let output = start.elapsed().as_secs_f64();
             let seconds = Seconds { bound: bound_seconds, output, ..seconds };
             let summary = Summary::new(title, &d, tolerance, Ok(&solution), seconds, Some(&bound));
-            write_file(&folder.join(SUMMARY), |out| summary.write(out))?;
+            results.write(SUMMARY, |out| summary.write(out))?;
+            results.publish()?;
             drop(progress);
             if !arguments.case.quiet {
                 print(&table(&summary, solution.statistics().polish, &folder))?;
@@ -69,18 +79,50 @@ pub(super) fn run(arguments: &SolveArguments) -> Result<(), Failure> {
             Ok(())
         }
         Err(AccuracyError::Rejected(rejected, tolerance)) => {
-            // What an earlier run left is not the solution of this one.
-            for name in [SOLUTION, PICTURE, DUAL, MESH_PICTURE, FLUX] {
-                let _ = std::fs::remove_file(folder.join(name));
-            }
             let summary = Summary::new(title, &d, tolerance, Err(&rejected), seconds, None);
-            write_file(&folder.join(SUMMARY), |out| summary.write(out))?;
-            let status = rejected.statistics.status.as_str();
-            let remedy = "allow more iterations or time, or a larger tolerance, or keep the polish on";
-            Err(Failure::NotCertified(format!("{}: {rejected} (status {status}); {remedy}", setup.name)))
+            Err(reject(&setup.name, &folder, &summary, &rejected))
         }
         Err(error) => Err(Failure::NotCertified(format!("{}: {error}", setup.name))),
     }
+}
+
+/// What to do when the solver does not come back in time.
+fn too_late(
+    setup: &Setup,
+    d: &Discretization,
+    folder: &Path,
+    seconds: Seconds,
+) -> impl Fn() -> Failure + Send + Sync + 'static {
+    let settings = &setup.case.solver;
+    let statistics = Statistics {
+        status: Status::TimeLimit,
+        solve_seconds: settings.time_limit.unwrap_or_default(),
+        ..Statistics::of(settings.backend.as_str())
+    };
+    let rejected = Rejected::without_result(statistics);
+    let tolerance = settings.tolerance.or_default();
+    let summary = Summary::new(&setup.case.title, d, tolerance, Err(&rejected), seconds, None);
+    let (name, folder) = (setup.name.clone(), folder.to_path_buf());
+    move || reject(&name, &folder, &summary, &rejected)
+}
+
+/// Writes the summary of a run without a solution, and says why there is none.
+fn reject(name: &str, folder: &Path, summary: &Summary, rejected: &Rejected) -> Failure {
+    // What an earlier run left is not the solution of this one.
+    for file in [SUMMARY, SOLUTION, PICTURE, DUAL, MESH_PICTURE, FLUX] {
+        let _ = remove(&folder.join(file));
+    }
+    let mut results = Results::new(folder);
+    let written = results.write(SUMMARY, |out| summary.write(out)).and_then(|()| results.publish());
+    if let Err(failure) = written {
+        return failure;
+    }
+    let remedy = match rejected.reason {
+        Reason::NoResult => "allow more time (--time-limit), or take another solver (--backend)",
+        _ => "allow more iterations or time, or a larger tolerance, or keep the polish on",
+    };
+    let status = rejected.statistics.status.as_str();
+    Failure::NotCertified(format!("{name}: {rejected} (status {status}); {remedy}"))
 }
 
 /// Arguments come before the case file.
@@ -92,18 +134,19 @@ fn override_settings(setup: &mut Setup, arguments: &SolveArguments) {
     if let Some(tolerance) = arguments.tolerance {
         settings.tolerance = tolerance;
     }
+    settings.time_limit = arguments.time_limit.or(settings.time_limit);
     settings.polish &= !arguments.no_polish;
 }
 
 /// `solution.vtu` and `membranes.png`.
 pub(super) fn write_solution(
-    folder: &Path,
+    results: &mut Results,
     title: &str,
     d: &Discretization,
     solution: &ContactSolution,
     bound: &ErrorBound,
 ) -> Result<(), Failure> {
-    write_file(&folder.join(SOLUTION), |out| write_vtu(d.mesh(), solution, bound, out))?;
+    results.write(SOLUTION, |out| write_vtu(d.mesh(), solution, bound, out))?;
     let [upper, lower] = solution.displacement();
     let picture = Picture {
         title,
@@ -115,13 +158,13 @@ pub(super) fn write_solution(
         contact: solution.contact(),
     };
     let png = render(&picture).map_err(|error| Failure::Input(format!("{PICTURE}: {error}")))?;
-    write_file(&folder.join(PICTURE), |out| out.write_all(&png))
+    results.write(PICTURE, |out| out.write_all(&png))
 }
 
 /// The dual mesh `D_h`, with the action as the piecewise constant that it is, and as Figure 1 of the paper; the fluxes
 /// on `S_h`.
 fn write_dual(
-    folder: &Path,
+    results: &mut Results,
     case: &CaseFile,
     d: &Discretization,
     solution: &ContactSolution,
@@ -130,17 +173,17 @@ fn write_dual(
     let mesh = d.mesh();
     let sub = SubTriangulation::new(mesh).map_err(|error| bad_input(DUAL, &error))?;
     let dual = DualMesh::new(mesh, &sub);
-    write_file(&folder.join(DUAL), |out| write_dual_vtu(&dual, solution, out))?;
+    results.write(DUAL, |out| write_dual_vtu(&dual, solution, out))?;
 
     let picture = MeshPicture { title: &case.title, mesh, dual: &dual, contact: Some(solution.contact()) };
     let png = render_mesh(&picture).map_err(|error| bad_input(MESH_PICTURE, &error))?;
-    write_file(&folder.join(MESH_PICTURE), |out| out.write_all(&png))?;
+    results.write(MESH_PICTURE, |out| out.write_all(&png))?;
 
     let [f1, f2] = case.problem.load();
     let load = |f| element_loads(mesh, f).map_err(|error| bad_input(FLUX, &error));
     let reconstructor = Reconstructor::new(d, &sub, [load(f1)?, load(f2)?]);
     let fluxes = reconstructor.reconstruct(solution.displacement(), Reconstruction::Full);
-    write_file(&folder.join(FLUX), |out| write_flux_vtu(&sub, &fluxes, solution, out))
+    results.write(FLUX, |out| write_flux_vtu(&sub, &fluxes, solution, out))
 }
 
 /// The summary for the eye.

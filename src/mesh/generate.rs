@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::polygon::{MAX_MIN_ANGLE, polygon};
+use super::polygon::{MAX_MIN_ANGLE, largest_triangle, polygon};
 use super::{Mesh, Pattern, disk, l_shape, rectangle};
 use crate::problem::Domain;
 
@@ -124,6 +124,31 @@ pub fn generate(domain: &Domain, size: MeshSize) -> Result<Mesh, GenerateError> 
     }
 }
 
+/// About how many vertices the mesh will have; exact for a structured one but on an L-shape.
+pub fn estimated_vertices(domain: &Domain, size: MeshSize) -> f64 {
+    match size {
+        MeshSize::Cells { cells, pattern } => {
+            let n = cells as f64;
+            let per_cell = if pattern == Pattern::Crossed { 2.0 } else { 1.0 };
+            match domain {
+                Domain::Rectangle { lower, upper } => {
+                    let [a, b] = cells_along(*lower, *upper, n);
+                    per_cell * (a + 1.0) * (b + 1.0)
+                }
+                Domain::LShape { .. } => per_cell * 3.0 * n * n,
+                Domain::Disk { .. } | Domain::Polygon { .. } => 3.0 * n * n,
+            }
+        }
+        MeshSize::EdgeLength { size, .. } => domain.area() / largest_triangle(size),
+    }
+}
+
+/// Cells along both sides of a rectangle with `n` along the shorter one.
+fn cells_along(lower: [f64; 2], upper: [f64; 2], n: f64) -> [f64; 2] {
+    let sides = [upper[0] - lower[0], upper[1] - lower[1]];
+    sides.map(|side| (n * (side / sides[0].min(sides[1]))).round())
+}
+
 fn check_extent(domain: &Domain) -> Result<(), GenerateError> {
     let (extents, coordinates) = match domain {
         Domain::Rectangle { lower, upper } => {
@@ -142,27 +167,25 @@ fn check_extent(domain: &Domain) -> Result<(), GenerateError> {
 }
 
 fn structured(domain: &Domain, cells: usize, pattern: Pattern) -> Result<Mesh, GenerateError> {
-    let vertices_per_cell = if pattern == Pattern::Crossed { 2.0 } else { 1.0 };
-    let n = cells as f64;
-    match *domain {
+    let check = || check_vertex_estimate(estimated_vertices(domain, MeshSize::Cells { cells, pattern }));
+    let mesh = match *domain {
+        Domain::Polygon { .. } => return Err(GenerateError::StructuredPolygon),
         Domain::Rectangle { lower, upper } => {
-            let sides = [upper[0] - lower[0], upper[1] - lower[1]];
-            let along = sides.map(|side| (n * (side / sides[0].min(sides[1]))).round());
-            check_vertex_estimate(vertices_per_cell * (along[0] + 1.0) * (along[1] + 1.0))?;
+            check()?;
+            let along = cells_along(lower, upper, cells as f64);
             rectangle(lower, upper, along.map(|cells| cells as usize), pattern)
         }
         Domain::LShape { half_width } => {
-            check_vertex_estimate(vertices_per_cell * 3.0 * n * n)?;
+            check()?;
             l_shape(half_width, cells, pattern)
         }
         Domain::Disk { centre, radius } => {
-            check_vertex_estimate(3.0 * n * n)?;
+            check()?;
             disk(centre, radius, cells)
         }
-        Domain::Polygon { .. } => return Err(GenerateError::StructuredPolygon),
-    }
+    };
     // Grids and rings are triangulations, up to rounding.
-    .map_err(|_| GenerateError::Rounding)
+    mesh.map_err(|_| GenerateError::Rounding)
 }
 
 fn unstructured(domain: &Domain, size: f64, min_angle: f64) -> Result<Mesh, GenerateError> {

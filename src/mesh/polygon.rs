@@ -4,8 +4,9 @@ use std::collections::HashSet;
 
 use spade::{AngleLimit, ConstrainedDelaunayTriangulation, Point2, RefinementParameters, Triangulation};
 
+use super::Mesh;
 use super::generate::{GenerateError, check_vertex_estimate};
-use super::{Mesh, twice_signed_area};
+use crate::problem::ring_area;
 
 /// Ruppert's algorithm ends for angles up to about 33 degrees; 30 is what it reaches on any input in practice.
 pub(super) const MAX_MIN_ANGLE: f64 = 30.0;
@@ -35,8 +36,8 @@ pub fn polygon(
         return Err(GenerateError::MinAngle { min_angle });
     }
     let area = check_rings(vertices, holes)?;
-    // An equilateral triangle of this edge length; two triangles a vertex.
-    let max_area = 0.25 * 3f64.sqrt() * size * size;
+    let max_area = largest_triangle(size);
+    // Two triangles a vertex, of half that area.
     let expected = check_vertex_estimate(area / max_area)?;
 
     let mut cdt = triangulate_rings(vertices, holes)?;
@@ -76,11 +77,16 @@ pub fn polygon(
     Ok(mesh)
 }
 
+/// The area of an equilateral triangle of this edge length.
+pub(super) fn largest_triangle(size: f64) -> f64 {
+    0.25 * 3f64.sqrt() * size * size
+}
+
 /// Checks the rings one by one; the area of the outer one less those of the holes.
 fn check_rings(vertices: &[[f64; 2]], holes: &[Vec<[f64; 2]>]) -> Result<f64, GenerateError> {
-    let mut area = ring_area("vertices", vertices)?;
+    let mut area = checked_area("vertices", vertices)?;
     for (k, hole) in holes.iter().enumerate() {
-        area -= ring_area(&format!("hole {}", k + 1), hole)?;
+        area -= checked_area(&format!("hole {}", k + 1), hole)?;
     }
     if !(area > 0.0) {
         return Err(GenerateError::Holes);
@@ -88,15 +94,14 @@ fn check_rings(vertices: &[[f64; 2]], holes: &[Vec<[f64; 2]>]) -> Result<f64, Ge
     Ok(area)
 }
 
-fn ring_area(name: &str, ring: &[[f64; 2]]) -> Result<f64, GenerateError> {
+fn checked_area(name: &str, ring: &[[f64; 2]]) -> Result<f64, GenerateError> {
     if ring.len() < 3 {
         return Err(GenerateError::Ring { ring: name.into(), problem: "has fewer than three vertices" });
     }
     if !ring.iter().flatten().all(|x| x.is_finite()) {
         return Err(GenerateError::Ring { ring: name.into(), problem: "has a vertex that is not finite" });
     }
-    let fan = |k: usize| twice_signed_area([ring[0], ring[k], ring[k + 1]]);
-    let area = 0.5 * (1..ring.len() - 1).map(fan).sum::<f64>().abs();
+    let area = ring_area(ring);
     if !(area > 0.0) {
         return Err(GenerateError::Ring { ring: name.into(), problem: "encloses no area" });
     }

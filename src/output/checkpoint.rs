@@ -5,15 +5,19 @@ use std::io::{self, Read, Seek, Write};
 use zip::ZipArchive;
 
 use crate::qp::{NpzWriter, read_vector};
+use crate::solver::Statistics;
 use crate::study::Checkpoint;
 
+/// The solver of which nothing is known.
+const UNKNOWN: &str = "unknown";
+
 /// Writes a checkpoint. Arrays: `marked`, the marked triangles of all refinements one after the other, `marked_counts`, their
-/// numbers; `u1`, `u2`, `lambda` over the vertices of the last mesh; `tolerance`.
+/// numbers; `u1`, `u2`, `lambda` over the vertices of the last mesh; `tolerance`; `statistics`, the bytes of a JSON object.
 ///
 /// # Errors
 /// When writing fails.
 pub fn write_checkpoint(checkpoint: &Checkpoint, out: impl Write + Seek) -> io::Result<()> {
-    let Checkpoint { marked, displacement: [u1, u2], lambda, tolerance } = checkpoint;
+    let Checkpoint { marked, displacement: [u1, u2], lambda, tolerance, statistics } = checkpoint;
     let counts: Vec<usize> = marked.iter().map(Vec::len).collect();
     let marked = marked.concat();
     let mut archive = NpzWriter::new(out);
@@ -23,6 +27,7 @@ pub fn write_checkpoint(checkpoint: &Checkpoint, out: impl Write + Seek) -> io::
         archive.floats(name, values, &[values.len()])?;
     }
     archive.floats("tolerance", &[*tolerance], &[1])?;
+    archive.bytes("statistics", &serde_json::to_vec(statistics)?)?;
     archive.finish()
 }
 
@@ -52,7 +57,10 @@ pub fn read_checkpoint(input: impl Read + Seek) -> io::Result<Checkpoint> {
     let &[tolerance] = tolerance.as_slice() else {
         return Err(io::Error::other("`tolerance` is not one number"));
     };
-    Ok(Checkpoint { marked, displacement, lambda, tolerance })
+    let statistics: Vec<u8> = read_vector(&mut archive, "statistics")?;
+    // An infinite residual is no JSON: then it is not known how the solution was found.
+    let statistics = serde_json::from_slice(&statistics).unwrap_or_else(|_| Statistics::of(UNKNOWN));
+    Ok(Checkpoint { marked, displacement, lambda, tolerance, statistics })
 }
 
 #[cfg(test)]
@@ -67,6 +75,11 @@ mod tests {
             displacement: [vec![0.1, -2.0], vec![f64::MIN_POSITIVE, 1.0 / 3.0]],
             lambda: vec![0.0, 1e300],
             tolerance: 1e-8,
+            statistics: Statistics {
+                iterations: 7,
+                choice: Some("few".into()),
+                ..Statistics::of("multigrid")
+            },
         }
     }
 

@@ -1,5 +1,7 @@
 //! The domain `omega`, a bounded set of the plane.
 
+use std::f64::consts::PI;
+
 /// The shape on which the two membranes are stretched. Lengths are in the unit of the coordinates.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Domain {
@@ -35,5 +37,42 @@ impl Domain {
     /// The unit square `(0, 1)^2`.
     pub fn unit_square() -> Self {
         Self::Rectangle { lower: [0.0, 0.0], upper: [1.0, 1.0] }
+    }
+
+    /// The area; of a polygon whose boundaries cross, some number.
+    pub fn area(&self) -> f64 {
+        match self {
+            Self::Rectangle { lower, upper } => (upper[0] - lower[0]) * (upper[1] - lower[1]),
+            Self::LShape { half_width } => 3.0 * half_width * half_width,
+            Self::Disk { radius, .. } => PI * radius * radius,
+            Self::Polygon { vertices, holes } => {
+                ring_area(vertices) - holes.iter().map(|hole| ring_area(hole)).sum::<f64>()
+            }
+        }
+    }
+}
+
+/// The area inside a closed polygon, in either orientation: the sum of the signed triangles from its first vertex.
+pub(crate) fn ring_area(ring: &[[f64; 2]]) -> f64 {
+    let Some(&[x, y]) = ring.first() else { return 0.0 };
+    let corner = |[x1, y1]: [f64; 2], [x2, y2]: [f64; 2]| (x1 - x) * (y2 - y) - (x2 - x) * (y1 - y);
+    0.5 * ring.windows(2).map(|edge| corner(edge[0], edge[1])).sum::<f64>().abs()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn areas_are_those_of_the_shapes() {
+        let square = |x: f64, side: f64| vec![[x, x], [x + side, x], [x + side, x + side], [x, x + side]];
+        let mut clockwise = square(1.0, 1.0);
+        clockwise.reverse();
+        let framed = Domain::Polygon { vertices: square(0.0, 3.0), holes: vec![clockwise] };
+        assert_eq!(framed.area(), 8.0);
+        assert_eq!(Domain::unit_square().area(), 1.0);
+        assert_eq!(Domain::LShape { half_width: 2.0 }.area(), 12.0);
+        assert_eq!(Domain::Disk { centre: [5.0, 5.0], radius: 2.0 }.area(), 4.0 * PI);
+        assert_eq!(Domain::Polygon { vertices: vec![], holes: vec![] }.area(), 0.0);
     }
 }

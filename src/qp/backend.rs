@@ -1,5 +1,6 @@
 //! What a QP solver is to this crate.
 
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::QpProblem;
@@ -56,7 +57,7 @@ pub struct QpSolution {
 }
 
 /// Why a solver stopped, in its own view. Whether the result is accepted is decided by residuals.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Status {
     /// It reached the tolerance.
     Solved,

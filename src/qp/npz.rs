@@ -24,6 +24,10 @@ impl<W: Write + Seek> NpzWriter<W> {
         self.array(name, values.iter().map(|&value| value as i64), shape)
     }
 
+    pub(crate) fn bytes(&mut self, name: &str, values: &[u8]) -> io::Result<()> {
+        self.array(name, values.iter().copied(), &[values.len()])
+    }
+
     fn array<T: npyz::AutoSerialize>(
         &mut self,
         name: &str,

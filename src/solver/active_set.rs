@@ -7,7 +7,7 @@ mod tests;
 
 pub(super) use obstacle::{Limits, Obstacle, guess};
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use super::cholesky::NotFactored;
 use super::decoupled::Decoupled;
@@ -36,10 +36,8 @@ impl ContactSolver for ActiveSet {
     fn solve(&mut self, d: &Discretization, options: &SolverOptions) -> Result<Candidate, SolverError> {
         options.check()?;
         let start = Instant::now();
-        let limits = Limits {
-            steps: options.max_iterations.unwrap_or(MAX_STEPS),
-            deadline: options.time_limit.map(|seconds| start + Duration::from_secs_f64(seconds)),
-        };
+        let limits =
+            Limits { steps: options.max_iterations.unwrap_or(MAX_STEPS), deadline: options.deadline(start) };
         let (active, mut level_iterations) = match &options.warm_start {
             Some(start) if start.fits(d) => (guess(d, &start.displacement, &start.multiplier), Vec::new()),
             _ => nested::guess_from_coarser_levels(d, &limits)?,

@@ -8,7 +8,7 @@ mod truncation;
 #[cfg(test)]
 mod tests;
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use super::decoupled::Decoupled;
 use super::hierarchy::Hierarchy;
@@ -46,7 +46,7 @@ impl ContactSolver for Multigrid {
         let [gap, sum] = halves(&hierarchy, &decoupled, d, options);
         let limits = Limits {
             cycles: options.max_iterations.unwrap_or(MAX_CYCLES),
-            deadline: options.time_limit.map(|seconds| start + Duration::from_secs_f64(seconds)),
+            deadline: options.deadline(start),
         };
         let (gap, sum) = rayon::join(|| solve(&hierarchy, gap, &limits), || solve(&hierarchy, sum, &limits));
         let (gap, sum) = (gap?, sum?);

@@ -4,6 +4,10 @@
 //! `sqrt(t)`: the action is then wrong by percents. The answer still tells which vertices touch, and from that guess the
 //! active set method is exact after a few repairs.
 
+use std::time::Instant;
+
+use serde::{Deserialize, Serialize};
+
 use super::Candidate;
 use super::active_set::{Limits, guess, settle};
 use super::qp_solver::unknowns;
@@ -15,7 +19,7 @@ use crate::qp::{KktResiduals, QpProblem, Status};
 const MAX_STEPS: usize = 100;
 
 /// What the polish did.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct PolishReport {
     /// Whether the polished result replaced the solver's.
     pub kept: bool,
@@ -30,12 +34,20 @@ pub struct PolishReport {
 }
 
 /// Polishes the candidate and keeps the result if its KKT residuals are smaller. `None` when a linear system cannot be
-/// solved.
-pub(super) fn polish(d: &Discretization, qp: &QpProblem, candidate: &mut Candidate) -> Option<PolishReport> {
+/// solved, or no time is left.
+pub(super) fn polish(
+    d: &Discretization,
+    qp: &QpProblem,
+    candidate: &mut Candidate,
+    deadline: Option<Instant>,
+) -> Option<PolishReport> {
+    if deadline.is_some_and(|deadline| Instant::now() > deadline) {
+        return None;
+    }
     let residual = |displacement: &[Vec<f64>; 2], multiplier: &[f64]| {
         KktResiduals::new(qp, &unknowns(d, displacement), multiplier).worst()
     };
-    let limits = Limits { steps: MAX_STEPS, deadline: None };
+    let limits = Limits { steps: MAX_STEPS, deadline };
     let polished = settle(d, guess(d, &candidate.displacement, &candidate.multiplier), &limits).ok()?;
     let residual_before = residual(&candidate.displacement, &candidate.multiplier);
     let residual_after = residual(&polished.displacement, &polished.multiplier);

@@ -7,6 +7,9 @@ use super::{Candidate, ContactSolver, SolverError, SolverOptions, Statistics};
 use crate::discretization::Discretization;
 use crate::qp::{Answer, BackendError, QpBackend, QpOptions, QpProblem, QpSolution, Status, contact_qp};
 
+/// What is left of a time limit that is over, seconds: to a backend, zero may mean that there is none.
+const SHORTEST: f64 = 1e-3;
+
 /// Poses (3.4) as a [`QpProblem`], has it solved by a backend, and polishes the answer.
 pub struct QpSolver {
     backend: Box<dyn QpBackend>,
@@ -29,7 +32,7 @@ impl ContactSolver for QpSolver {
         let start = Instant::now();
         let qp = contact_qp(d);
         let posing = start.elapsed().as_secs_f64();
-        let solution = solve_nondimensional(self.backend.as_mut(), &qp, &qp_options(d, options))?;
+        let solution = solve_nondimensional(self.backend.as_mut(), &qp, &qp_options(d, options, posing))?;
         let statistics = Statistics {
             status: solution.status,
             iterations: solution.iterations,
@@ -38,7 +41,7 @@ impl ContactSolver for QpSolver {
         };
         let mut candidate = Candidate::from_answer(d, Answer { x: solution.x, y: solution.y }, statistics);
         if options.polish {
-            candidate.statistics.polish = polish(d, &qp, &mut candidate);
+            candidate.statistics.polish = polish(d, &qp, &mut candidate, options.deadline(start));
         }
         candidate.statistics.solve_seconds =
             start.elapsed().as_secs_f64() - candidate.statistics.setup_seconds;
@@ -46,13 +49,14 @@ impl ContactSolver for QpSolver {
     }
 }
 
-fn qp_options(d: &Discretization, options: &SolverOptions) -> QpOptions {
+/// After `spent` seconds.
+fn qp_options(d: &Discretization, options: &SolverOptions, spent: f64) -> QpOptions {
     let start = options.warm_start.as_ref().filter(|start| start.fits(d));
     let warm_start = start.map(|start| (unknowns(d, &start.displacement), start.multiplier.clone()));
     QpOptions {
         tolerance: options.tolerance,
         max_iterations: options.max_iterations,
-        time_limit: options.time_limit,
+        time_limit: options.time_limit.map(|limit| (limit - spent).max(SHORTEST)),
         warm_start,
     }
 }

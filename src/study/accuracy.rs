@@ -66,7 +66,8 @@ pub enum AccuracyError {
     Measure(#[from] MeasureError),
 }
 
-/// Solves `d`, the discretization of `problem`, certifies the result and bounds its error. `options.tolerance` is not used.
+/// Solves `d`, the discretization of `problem`, certifies the result and bounds its error. `options.tolerance` is not used, and
+/// the time limit is that of all solves together.
 ///
 /// # Errors
 /// [`AccuracyError`]; a rejected result comes with the tolerance that it misses.
@@ -85,11 +86,16 @@ pub fn solve_bounded(
         Ok(Bounded::new(problem, domain, d, solution, tolerance)?)
     };
     let Tolerance::Fixed(tolerance) = tolerance else {
+        let start = Instant::now();
         let mut bounded = at(LOOSEST, solver, options)?;
+        // What cannot be had more accurately, or not in time, is certified as it is.
         while let Some(tighter) = bounded.tighter() {
+            let time_limit = options.time_limit.map(|limit| limit - start.elapsed().as_secs_f64());
+            if time_limit.is_some_and(|left| left <= 0.0) {
+                break;
+            }
             let warm_start = Some(Fields::from(&bounded.solution).into_start(d));
-            // What cannot be had more accurately is certified as it is.
-            match at(tighter, solver, &SolverOptions { warm_start, ..options.clone() }) {
+            match at(tighter, solver, &SolverOptions { warm_start, time_limit, ..options.clone() }) {
                 Ok(better) => bounded = better,
                 Err(AccuracyError::Rejected(..)) => break,
                 Err(error) => return Err(error),

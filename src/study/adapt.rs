@@ -12,7 +12,6 @@ use crate::discretization::Discretization;
 use crate::error::{ErrorBound, energy_error, residual_indicators};
 use crate::mesh::{Bisection, Mesh};
 use crate::problem::{ContactProblem, Domain, ExactSolution};
-use crate::qp::Status;
 use crate::solver::{Candidate, ContactSolver, SolverOptions, StartingPoint, Statistics};
 
 /// The fraction of the squared error in the triangles that are marked.
@@ -97,6 +96,8 @@ pub struct Checkpoint {
     pub lambda: Vec<f64>,
     /// The tolerance within which they are certified.
     pub tolerance: f64,
+    /// How they were found.
+    pub statistics: Statistics,
 }
 
 impl AdaptiveStudy {
@@ -121,6 +122,11 @@ impl AdaptiveStudy {
     /// The current mesh.
     pub fn mesh(&self) -> &Mesh {
         self.bisection.mesh()
+    }
+
+    /// Limits the time of each solve from now on, seconds.
+    pub fn set_time_limit(&mut self, time_limit: Option<f64>) {
+        self.options.time_limit = time_limit;
     }
 
     /// The problem.
@@ -205,6 +211,7 @@ impl AdaptiveStudy {
             displacement: last.solution.displacement().clone(),
             lambda: last.solution.lambda().to_vec(),
             tolerance: last.tolerance,
+            statistics: last.solution.statistics().clone(),
         })
     }
 
@@ -214,7 +221,7 @@ impl AdaptiveStudy {
     /// # Errors
     /// [`StudyError`] when the problem cannot be posed on the mesh.
     pub fn resume(&mut self, checkpoint: Checkpoint) -> Result<bool, StudyError> {
-        let Checkpoint { marked, displacement, lambda, tolerance } = checkpoint;
+        let Checkpoint { marked, displacement, lambda, tolerance, statistics } = checkpoint;
         let mut bisection = self.bisection.clone();
         for marked in &marked {
             let triangles = bisection.mesh().triangles().len();
@@ -228,7 +235,6 @@ impl AdaptiveStudy {
             return Ok(false);
         }
         let StartingPoint { displacement, multiplier } = Fields { displacement, lambda }.into_start(&d);
-        let statistics = Statistics { status: Status::Unknown, ..Statistics::of(self.solver.name()) };
         let Ok(solution) = certify(&d, Candidate { displacement, multiplier, statistics }, tolerance) else {
             return Ok(false);
         };

@@ -80,9 +80,14 @@ impl ConvergenceStudy {
         Ok(Self { exact, problem, family, solver, options, tolerance, level: 0, last: None })
     }
 
-    /// Vertices of the coming level.
+    /// Vertices of the current mesh: that of the last level, before the first one that of the coming level.
     pub fn vertices(&self) -> usize {
         self.family.mesh().points().len()
+    }
+
+    /// Limits the time of each solve from now on, seconds.
+    pub fn set_time_limit(&mut self, time_limit: Option<f64>) {
+        self.options.time_limit = time_limit;
     }
 
     /// Solves on the next mesh and measures the errors.

@@ -135,8 +135,8 @@ fn adapt_reaches_the_accuracy_and_writes_what_it_says() {
 fn adapt_says_why_it_stops_short_and_keeps_what_it_has() {
     for (limit, why) in [
         ("--max-vertices 300", "more than 300 vertices"),
-        ("--time-limit 1e-9", "time limit"),
-        ("--memory-limit 1e-6", "more memory"),
+        ("--time-limit 1", "time limit"),
+        ("--memory-limit 0.234", "more memory"),
     ] {
         let (folder, runs) = in_folder(CASE, &[&format!("adapt case.toml --tolerance 0.001 {limit}")]);
         assert_eq!(runs[0].code, Some(1), "{limit}");

@@ -23,4 +23,6 @@ mod program;
 mod readme;
 mod stability;
 #[cfg(feature = "cli")]
+mod surroundings;
+#[cfg(feature = "cli")]
 mod theory;
