@@ -17,7 +17,7 @@ pub use domain::Domain;
 pub use expression::{Expression, ExpressionError};
 pub use function::Function;
 
-pub(crate) use spelling::nearest;
+pub(crate) use spelling::{excerpt, nearest};
 
 use thiserror::Error;
 
