@@ -16,7 +16,7 @@ pub fn write_checkpoint(checkpoint: &Checkpoint, out: impl Write + Seek) -> io::
     let Checkpoint { marked, displacement: [u1, u2], lambda, tolerance } = checkpoint;
     let counts: Vec<usize> = marked.iter().map(Vec::len).collect();
     let marked = marked.concat();
-    let mut archive = NpzWriter::new(out);
+    let mut archive = NpzWriter::stored(out);
     archive.integers("marked_counts", &counts, &[counts.len()])?;
     archive.integers("marked", &marked, &[marked.len()])?;
     for (name, values) in [("u1", u1), ("u2", u2), ("lambda", lambda)] {
@@ -26,7 +26,7 @@ pub fn write_checkpoint(checkpoint: &Checkpoint, out: impl Write + Seek) -> io::
     archive.finish()
 }
 
-/// Reads a checkpoint. Whether it belongs to a study is for [`AdaptiveStudy::resume`](crate::study::AdaptiveStudy::resume) to
+/// Reads a checkpoint, into memory of a few times its length. Whether it belongs to a study is for [`AdaptiveStudy::resume`](crate::study::AdaptiveStudy::resume) to
 /// say.
 ///
 /// # Errors
@@ -92,7 +92,13 @@ mod tests {
             assert!(read_checkpoint(Cursor::new(&bytes[..length])).is_err(), "{length} bytes");
         }
         let mut file = Cursor::new(Vec::new());
-        let mut archive = NpzWriter::new(&mut file);
+        let mut archive = NpzWriter::deflated(&mut file);
+        archive.integers("marked_counts", &[1], &[1]).unwrap();
+        archive.finish().unwrap();
+        let error = read_checkpoint(file).unwrap_err();
+        assert!(error.to_string().contains("compressed"), "{error}");
+        let mut file = Cursor::new(Vec::new());
+        let mut archive = NpzWriter::stored(&mut file);
         archive.integers("marked_counts", &[5], &[1]).unwrap();
         archive.integers("marked", &[1, 2], &[2]).unwrap();
         archive.finish().unwrap();

@@ -21,6 +21,7 @@ mod plate;
 mod program;
 #[cfg(feature = "cli")]
 mod readme;
+mod resume;
 mod stability;
 #[cfg(feature = "cli")]
 mod theory;
