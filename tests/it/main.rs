@@ -16,6 +16,8 @@ mod custom_backend;
 mod exact;
 mod layers;
 #[cfg(feature = "cli")]
+mod manifest;
+#[cfg(feature = "cli")]
 mod plate;
 #[cfg(feature = "cli")]
 mod program;
