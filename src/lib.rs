@@ -6,7 +6,6 @@
 //! [`Discretization`](discretization::Discretization) of the two, a [`ContactSolver`](solver::ContactSolver) such as
 //! [`QpSolver`](solver::QpSolver), and [`certify`](action::certify). Numbers in round brackets are those of F. Ben
 //! Belgacem, C. Bernardi, A. Blouza, M. Vohralik, Math. Model. Nat. Phenom. 4 (2009).
-#![forbid(unsafe_code)]
 #![deny(missing_docs)]
 
 pub mod problem;

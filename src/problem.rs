@@ -18,7 +18,7 @@ pub(crate) use domain::ring_area;
 pub use expression::{Expression, ExpressionError};
 pub use function::Function;
 
-pub(crate) use spelling::nearest;
+pub(crate) use spelling::{excerpt, nearest};
 
 use thiserror::Error;
 

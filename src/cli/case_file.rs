@@ -1,7 +1,8 @@
 //! The case file: problem, mesh and solver from TOML.
 
 use std::collections::BTreeMap;
-use std::io;
+use std::fs::File;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
@@ -10,7 +11,7 @@ use toml::Value;
 use super::Failure;
 use super::section::{Section, as_number};
 use crate::mesh::{MeshSize, Pattern};
-use crate::problem::{Case, ContactProblem, Domain, ExactSolution, Expression, Function};
+use crate::problem::{Case, ContactProblem, Domain, ExactSolution, Expression, Function, excerpt};
 use crate::study::Tolerance;
 
 /// Cells of a structured mesh when the case file does not say.
@@ -18,6 +19,9 @@ const DEFAULT_CELLS: usize = 64;
 
 /// Least angle of an unstructured mesh when the case file does not say, degrees.
 const DEFAULT_MIN_ANGLE: f64 = 25.0;
+
+/// Longest case file, bytes: a polygon of half a million corners. Its tables take a few hundred times as much memory.
+const MAX_BYTES: u64 = 1 << 24;
 
 /// A case file, read and checked.
 #[derive(Debug, Clone)]
@@ -119,7 +123,8 @@ impl FromStr for BackendName {
                 Err(format!("`{name}` is not in this build: build with `cargo build --features {name}`"))
             }
             None => Err(format!(
-                "there is no solver `{name}`: choose one of {}",
+                "there is no solver `{}`: choose one of {}",
+                excerpt(name),
                 Self::ALL.map(Self::as_str).join(", ")
             )),
         }
@@ -137,8 +142,12 @@ impl CaseFile {
 
     /// Reads the text of a case file.
     pub(super) fn read_text(path: &Path) -> Result<String, Failure> {
-        std::fs::read_to_string(path)
-            .map_err(|error| Failure::Input(format!("{}: {}", path.display(), unreadable(&error))))
+        let read = || {
+            let mut text = String::new();
+            File::open(path)?.take(MAX_BYTES + 1).read_to_string(&mut text)?;
+            if text.len() as u64 > MAX_BYTES { Err(io::ErrorKind::FileTooLarge.into()) } else { Ok(text) }
+        };
+        read().map_err(|error| Failure::Input(format!("{}: {}", path.display(), unreadable(&error))))
     }
 
     /// Reads the text of a case file that lies at `path`; `name` stands in messages.
@@ -170,6 +179,9 @@ impl CaseFile {
 
 fn unreadable(error: &io::Error) -> String {
     let remedy = match error.kind() {
+        io::ErrorKind::FileTooLarge => {
+            "have a polygon of so many corners meshed by Gmsh, and name the mesh file"
+        }
         io::ErrorKind::NotFound => "name an existing file, or make one with `membranes cases strip`",
         io::ErrorKind::InvalidData => "save it as UTF-8",
         _ => "name a readable file",
@@ -189,7 +201,8 @@ fn exact_case(top: &mut Section) -> Result<Option<ExactSolution>, Failure> {
         }
         return Ok(None);
     };
-    let case = Case::from_name(&name).map_err(|error| top.error("case", format!("= {name:?}: {error}")))?;
+    let case = Case::from_name(&name)
+        .map_err(|error| top.error("case", format!("= \"{}\": {error}", excerpt(&name))))?;
     let parameters: BTreeMap<String, f64> = section.all_numbers()?.into_iter().collect();
     case.solution(&parameters).map(Some).map_err(|error| top.table_error(format!("[parameters]: {error}")))
 }
@@ -331,8 +344,10 @@ fn domain(section: &mut Section, shape: &str) -> Result<Domain, Failure> {
             Domain::Polygon { vertices: vertices.ok_or_else(missing)?, holes }
         }
         _ => {
-            return Err(section
-                .error("shape", format!("= {shape:?} is unknown: choose one of {}", SHAPES.join(", "))));
+            return Err(section.error(
+                "shape",
+                format!("= \"{}\" is unknown: choose one of {}", excerpt(shape), SHAPES.join(", ")),
+            ));
         }
     })
 }
@@ -364,9 +379,10 @@ fn mesh_size(section: &mut Section, domain: &Domain) -> Result<MeshSize, Failure
                 None | Some("right") => Pattern::Right,
                 Some("crossed") => Pattern::Crossed,
                 Some(other) => {
-                    return Err(
-                        section.error("pattern", format!("= {other:?} is unknown: choose right or crossed"))
-                    );
+                    return Err(section.error(
+                        "pattern",
+                        format!("= \"{}\" is unknown: choose right or crossed", excerpt(other)),
+                    ));
                 }
             };
             Ok(MeshSize::Cells { cells: cells.unwrap_or(DEFAULT_CELLS), pattern })
@@ -379,9 +395,9 @@ fn solver(top: &mut Section) -> Result<SolverSettings, Failure> {
     let mut section = top.section("solver")?;
     let backend = match section.text("backend")? {
         None => BackendName::Auto,
-        Some(name) => name
-            .parse()
-            .map_err(|problem: String| section.error("backend", format!("= {name:?}: {problem}")))?,
+        Some(name) => name.parse().map_err(|problem: String| {
+            section.error("backend", format!("= \"{}\": {problem}", excerpt(&name)))
+        })?,
     };
     let tolerance = match section.take("tolerance") {
         None => Tolerance::Fixed(1e-8),

@@ -3,7 +3,7 @@
 use toml::{Table, Value};
 
 use super::Failure;
-use crate::problem::nearest;
+use crate::problem::{excerpt, nearest};
 
 /// Letters that may be wrong, missing, surplus or exchanged in a misspelt key.
 const MAX_SLIPS: usize = 2;
@@ -147,7 +147,7 @@ impl Section {
 
     /// An error about a key of this table.
     pub(super) fn error(&self, key: &str, problem: impl std::fmt::Display) -> Failure {
-        Failure::Input(format!("{}: `{}{key}` {problem}", self.file, self.prefix))
+        Failure::Input(format!("{}: `{}{}` {problem}", self.file, self.prefix, excerpt(key)))
     }
 
     /// An error about the table as a whole.

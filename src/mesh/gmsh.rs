@@ -14,6 +14,7 @@ mod v4;
 
 pub use error::{GmshError, Place};
 
+use crate::problem::excerpt;
 use elements::Elements;
 use nodes::Nodes;
 use scanner::{ByteOrder, Encoding, Scanner};
@@ -114,7 +115,7 @@ fn read_format(bytes: &[u8]) -> Result<(Scanner<'_>, Version), GmshError> {
     let version = match found.parse::<f64>() {
         Ok(2.2) => Version::V2,
         Ok(4.1) => Version::V4,
-        _ => return Err(GmshError::Version { found: error::excerpt(found) }),
+        _ => return Err(GmshError::Version { found: excerpt(found) }),
     };
     let binary = match scanner.word("the type of the file")? {
         "0" => false,
@@ -123,7 +124,7 @@ fn read_format(bytes: &[u8]) -> Result<(Scanner<'_>, Version), GmshError> {
     };
     match scanner.word("the size of a number")? {
         "8" => {}
-        found => return Err(GmshError::DataSize { found: error::excerpt(found) }),
+        found => return Err(GmshError::DataSize { found: excerpt(found) }),
     }
     scanner.end_line()?;
     if binary {

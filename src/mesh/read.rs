@@ -33,7 +33,15 @@ impl Mesh {
     /// # Errors
     /// [`ReadError`]: unreadable, not such a file, or no conforming triangulation.
     pub fn read_gmsh(path: &Path) -> Result<Self, ReadError> {
-        let GmshTriangulation { points, triangles, element_tags, .. } = parse(&std::fs::read(path)?)?;
+        Self::from_gmsh(&std::fs::read(path)?)
+    }
+
+    /// Takes a Gmsh mesh from the bytes of its file, as [`Mesh::read_gmsh`]. Memory and time stay proportional to their number.
+    ///
+    /// # Errors
+    /// [`ReadError`], but for [`ReadError::Io`].
+    pub fn from_gmsh(bytes: &[u8]) -> Result<Self, ReadError> {
+        let GmshTriangulation { points, triangles, element_tags, .. } = parse(bytes)?;
         Self::new(points, triangles).map_err(|source| {
             let element = source.triangle().and_then(|t| element_tags.get(t).copied());
             ReadError::Mesh { source, element }

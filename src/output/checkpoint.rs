@@ -20,7 +20,7 @@ pub fn write_checkpoint(checkpoint: &Checkpoint, out: impl Write + Seek) -> io::
     let Checkpoint { marked, displacement: [u1, u2], lambda, tolerance, statistics } = checkpoint;
     let counts: Vec<usize> = marked.iter().map(Vec::len).collect();
     let marked = marked.concat();
-    let mut archive = NpzWriter::new(out);
+    let mut archive = NpzWriter::stored(out);
     archive.integers("marked_counts", &counts, &[counts.len()])?;
     archive.integers("marked", &marked, &[marked.len()])?;
     for (name, values) in [("u1", u1), ("u2", u2), ("lambda", lambda)] {
@@ -31,7 +31,7 @@ pub fn write_checkpoint(checkpoint: &Checkpoint, out: impl Write + Seek) -> io::
     archive.finish()
 }
 
-/// Reads a checkpoint. Whether it belongs to a study is for [`AdaptiveStudy::resume`](crate::study::AdaptiveStudy::resume) to
+/// Reads a checkpoint, into memory of a few times its length. Whether it belongs to a study is for [`AdaptiveStudy::resume`](crate::study::AdaptiveStudy::resume) to
 /// say.
 ///
 /// # Errors
@@ -57,9 +57,10 @@ pub fn read_checkpoint(input: impl Read + Seek) -> io::Result<Checkpoint> {
     let &[tolerance] = tolerance.as_slice() else {
         return Err(io::Error::other("`tolerance` is not one number"));
     };
-    let statistics: Vec<u8> = read_vector(&mut archive, "statistics")?;
-    // An infinite residual is no JSON: then it is not known how the solution was found.
-    let statistics = serde_json::from_slice(&statistics).unwrap_or_else(|_| Statistics::of(UNKNOWN));
+    // Infinite residuals are no JSON: then it is not known how the solution was found.
+    let statistics = read_vector::<u8>(&mut archive, "statistics");
+    let statistics = statistics.ok().and_then(|text| serde_json::from_slice(&text).ok());
+    let statistics = statistics.unwrap_or_else(|| Statistics::of(UNKNOWN));
     Ok(Checkpoint { marked, displacement, lambda, tolerance, statistics })
 }
 
@@ -105,7 +106,13 @@ mod tests {
             assert!(read_checkpoint(Cursor::new(&bytes[..length])).is_err(), "{length} bytes");
         }
         let mut file = Cursor::new(Vec::new());
-        let mut archive = NpzWriter::new(&mut file);
+        let mut archive = NpzWriter::deflated(&mut file);
+        archive.integers("marked_counts", &[1], &[1]).unwrap();
+        archive.finish().unwrap();
+        let error = read_checkpoint(file).unwrap_err();
+        assert!(error.to_string().contains("compressed"), "{error}");
+        let mut file = Cursor::new(Vec::new());
+        let mut archive = NpzWriter::stored(&mut file);
         archive.integers("marked_counts", &[5], &[1]).unwrap();
         archive.integers("marked", &[1, 2], &[2]).unwrap();
         archive.finish().unwrap();

@@ -24,7 +24,7 @@ pub use decoupled::Interface;
 pub use parameter::{CaseError, Parameter, Range};
 pub use solution::ExactSolution;
 
-use super::nearest;
+use super::{excerpt, nearest};
 use decoupled::Decoupled;
 use parameter::{Values, listed};
 
@@ -90,7 +90,7 @@ impl Case {
     pub fn from_name(name: &str) -> Result<Self, CaseError> {
         let known = Self::ALL.into_iter().map(Self::name);
         Self::ALL.into_iter().find(|case| case.name() == name).ok_or_else(|| CaseError::UnknownCase {
-            name: name.to_owned(),
+            name: excerpt(name),
             nearest: nearest(name, known.clone()).map_or("", |(known, _)| known),
             known: listed(known),
         })

@@ -1,4 +1,17 @@
-//! Names that are almost right.
+//! Names in messages: those that are almost right, and how to show those that may be anything.
+
+/// Characters of a text from a file that a message shows.
+const SHOWN: usize = 32;
+
+/// The first characters of a text from a file, without line breaks or control characters, for a message of one line.
+pub(crate) fn excerpt(text: &str) -> String {
+    let mut escaped = text.chars().flat_map(char::escape_debug);
+    let mut shown: String = escaped.by_ref().take(SHOWN).collect();
+    if escaped.next().is_some() {
+        shown.push_str("...");
+    }
+    shown
+}
 
 /// The known name nearest to `name`, and how many slips (a letter added, left out, changed, or two exchanged) lie between
 /// them; upper and lower case count as alike. `None` when nothing is known.
@@ -13,6 +26,18 @@ pub(crate) fn nearest<'k>(name: &str, known: impl IntoIterator<Item = &'k str>) 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_excerpt_is_short_and_one_line() {
+        assert_eq!(excerpt("a\nb\u{1b}"), "a\\nb\\u{1b}");
+        assert_eq!(excerpt(&"x".repeat(SHOWN)), "x".repeat(SHOWN), "no longer than that: all of it");
+        assert_eq!(excerpt(&"x".repeat(SHOWN + 1)), format!("{}...", "x".repeat(SHOWN)));
+        assert_eq!(
+            excerpt(&"\t".repeat(SHOWN)),
+            format!("{}...", "\\t".repeat(SHOWN / 2)),
+            "also when escaped"
+        );
+    }
 
     #[test]
     fn the_name_with_the_fewest_slips_wins() {

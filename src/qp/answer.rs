@@ -7,6 +7,8 @@ use thiserror::Error;
 use zip::ZipArchive;
 use zip::result::ZipError;
 
+use super::npz::open_array;
+
 /// A point and its multipliers, from elsewhere: finite numbers in the right number, and no more is known of them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Answer {
@@ -46,7 +48,7 @@ fn read_array(
         error => AnswerError::Array { name, source: io::Error::other(error) },
     })?;
     let broken = |source| AnswerError::Array { name, source };
-    let array = npyz::NpyFile::new(entry).map_err(broken)?;
+    let array = open_array(entry).map_err(broken)?;
     // The shape comes first: it says how much will be read, and a hostile header may say anything.
     if array.shape() != [length as u64] {
         let found = Shape(array.shape().to_vec());

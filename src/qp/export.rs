@@ -17,7 +17,7 @@ use crate::discretization::Discretization;
 /// # Errors
 /// When writing fails.
 pub fn write_npz(d: &Discretization, qp: &QpProblem, out: impl Write + Seek) -> io::Result<()> {
-    let mut archive = NpzWriter::new(out);
+    let mut archive = NpzWriter::deflated(out);
     write_matrix(&mut archive, "P", &symmetric(qp.p_upper()))?;
     write_matrix(&mut archive, "A", qp.a())?;
     archive.floats("q", qp.q(), &[qp.q().len()])?;

@@ -37,6 +37,14 @@ impl Tolerance {
             Self::Auto => SolverOptions::default().tolerance,
         }
     }
+
+    /// The largest residual that it accepts.
+    pub(super) fn loosest(self) -> f64 {
+        match self {
+            Self::Fixed(tolerance) => tolerance,
+            Self::Auto => LOOSEST,
+        }
+    }
 }
 
 /// A certified solution and how far it is from the exact one.

@@ -17,6 +17,10 @@ use crate::solver::{Candidate, ContactSolver, SolverOptions, StartingPoint, Stat
 /// The fraction of the squared error in the triangles that are marked.
 const FRACTION: f64 = 0.5;
 
+/// Refinements of a study that can go on from a checkpoint, so that those of a hostile one take a time proportional to its
+/// length. Runs have less than a hundred.
+const MAX_REFINEMENTS: usize = 1000;
+
 /// Solves on meshes that are bisected where the indicators of the guaranteed bound are largest.
 ///
 /// Each level starts from the solution of the one before; the bisections are the hierarchy of the multigrid solver.
@@ -215,25 +219,33 @@ impl AdaptiveStudy {
         })
     }
 
-    /// Goes on from a checkpoint: bisects the first mesh again and has the solution certified again. Returns whether it is one
-    /// of this study; if not, the study is as it was.
+    /// Goes on from a checkpoint: bisects the first mesh again and has the solution certified again, within a
+    /// tolerance that the study accepts. Returns whether it is one of this study; if not, the study is as it was.
     ///
     /// # Errors
     /// [`StudyError`] when the problem cannot be posed on the mesh.
     pub fn resume(&mut self, checkpoint: Checkpoint) -> Result<bool, StudyError> {
         let Checkpoint { marked, displacement, lambda, tolerance, statistics } = checkpoint;
+        let vertices = lambda.len();
+        let is_whole = displacement.iter().all(|values| values.len() == vertices);
+        if !is_whole || !(tolerance <= self.tolerance.loosest()) || marked.len() > MAX_REFINEMENTS {
+            return Ok(false);
+        }
         let mut bisection = self.bisection.clone();
         for marked in &marked {
-            let triangles = bisection.mesh().triangles().len();
-            if marked.iter().any(|&t| t >= triangles) || bisection.refine(marked).is_err() {
+            // Each refinement has made vertices, and the solution has a value at each: so a hostile checkpoint makes no
+            // mesh that is larger than itself.
+            let mesh = bisection.mesh();
+            let is_there = |&t: &usize| t < mesh.triangles().len();
+            let may_grow = !marked.is_empty() && mesh.points().len() < vertices;
+            if !may_grow || !marked.iter().all(is_there) || bisection.refine(marked).is_err() {
                 return Ok(false);
             }
         }
-        let d = Discretization::new(&self.problem, bisection.mesh())?;
-        let vertices = bisection.mesh().points().len();
-        if displacement.iter().chain([&lambda]).any(|values| values.len() != vertices) {
+        if bisection.mesh().points().len() != vertices {
             return Ok(false);
         }
+        let d = Discretization::new(&self.problem, bisection.mesh())?;
         let StartingPoint { displacement, multiplier } = Fields { displacement, lambda }.into_start(&d);
         let Ok(solution) = certify(&d, Candidate { displacement, multiplier, statistics }, tolerance) else {
             return Ok(false);

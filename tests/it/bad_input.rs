@@ -115,6 +115,7 @@ const BAD_SYNTAX: &[Fault] = &[
 
 const BAD_KEYS: &[Fault] = &[
     ("title", "tilte", &["`tilte`", "nearest is `title`"]),
+    ("title", "\"ti\\ntle\"", &["`ti\\ntle`", "nearest is `title`"]),
     ("[membranes]", "[membrane]", &["`membrane`", "nearest is `membranes`"]),
     ("tension", "tensoin", &["`membranes.tensoin`", "nearest is `tension`"]),
     ("height", "hieght", &["`membranes.hieght`", "nearest is `height`"]),
@@ -277,6 +278,7 @@ const BAD_ARGUMENTS: &[(&str, &[&str], &str)] = &[
     ("check case.toml case.toml", &["unexpected argument 'case.toml'"], "check case.toml"),
     ("check cas.toml", &["cas.toml", "name an existing file", "membranes cases"], "check case.toml"),
     ("check folder", &["folder", "name a readable file"], "check case.toml"),
+    ("check endless.toml", &["endless.toml", "too large", "meshed by Gmsh"], "check case.toml"),
     ("check latin1.toml", &["latin1.toml", "save it as UTF-8"], "check case.toml"),
     ("check deep.toml", &["`membranes.load[1]`", "too deeply", "simplify"], "check case.toml"),
     ("check case.toml --refine -1", &["'--refine <N>'", "at least 0"], "check case.toml --refine 1"),
@@ -388,6 +390,9 @@ fn bad_arguments_are_refused_in_one_line_and_mended_ones_accepted() {
     write("latin1.toml", b"title = \"Stra\xdfe\"");
     let deep = format!("{}x{}", "(1 + ".repeat(1000), ")".repeat(1000));
     write("deep.toml", SQUARE.replace("-15.0", &format!("{deep:?}")).as_bytes());
+    // Sparse: it takes no space.
+    let endless = fs::File::create(folder.path().join("endless.toml")).unwrap();
+    endless.set_len(1 << 30).unwrap();
     fs::create_dir(folder.path().join("folder")).unwrap();
     assert!(!complaints(folder.path(), "cases", &[]).is_empty(), "to be accepted is no refusal");
     for (bad, says, mended) in BAD_ARGUMENTS {

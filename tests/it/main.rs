@@ -16,11 +16,14 @@ mod custom_backend;
 mod exact;
 mod layers;
 #[cfg(feature = "cli")]
+mod manifest;
+#[cfg(feature = "cli")]
 mod plate;
 #[cfg(feature = "cli")]
 mod program;
 #[cfg(feature = "cli")]
 mod readme;
+mod resume;
 mod stability;
 #[cfg(feature = "cli")]
 mod surroundings;

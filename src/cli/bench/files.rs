@@ -14,6 +14,9 @@ pub(super) const PICTURE: &str = "bench.png";
 /// The slopes to compare with: work in proportion to the vertices, and that of a sparse factorisation in the plane.
 const SLOPES: [f64; 2] = [1.0, 1.5];
 
+/// Rows of a file at most: far more than a picture can tell apart. Each curve is looked for among all of them.
+const MAX_ROWS: usize = 5000;
+
 /// Rows of a file in the form of `bench.csv`.
 pub(super) fn read_rows(path: &Path) -> Result<Vec<Row>, Failure> {
     let bad_input = |error: csv::Error| {
@@ -22,7 +25,13 @@ pub(super) fn read_rows(path: &Path) -> Result<Vec<Row>, Failure> {
         Failure::Input(format!("{}: {error}; {remedy}", path.display()))
     };
     let mut reader = csv::Reader::from_path(path).map_err(bad_input)?;
-    reader.deserialize().collect::<Result<_, _>>().map_err(bad_input)
+    let rows: Vec<Row> =
+        reader.deserialize().take(MAX_ROWS + 1).collect::<Result<_, _>>().map_err(bad_input)?;
+    if rows.len() > MAX_ROWS {
+        let path = path.display();
+        return Err(Failure::Input(format!("{path}: more than {MAX_ROWS} rows: merge those to be compared")));
+    }
+    Ok(rows)
 }
 
 /// The rows as they are.
@@ -75,6 +84,18 @@ pub(super) fn solver_name(curve: &Curve) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_file_of_too_many_rows_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let read = |rows: usize| {
+            write_rows(folder.path(), &vec![Row::default(); rows]).unwrap();
+            read_rows(&folder.path().join(ROWS))
+        };
+        assert_eq!(read(MAX_ROWS).map(|rows| rows.len()), Ok(MAX_ROWS));
+        let message = read(MAX_ROWS + 1).unwrap_err().to_string();
+        assert!(message.ends_with("more than 5000 rows: merge those to be compared"), "{message}");
+    }
 
     #[test]
     fn names_say_what_tells_curves_apart() {

@@ -192,13 +192,3 @@ pub enum GmshError {
         others: usize,
     },
 }
-
-/// The first characters of a text from the file, without line breaks or control characters, for a message.
-pub(super) fn excerpt(text: &str) -> String {
-    const LONGEST: usize = 32;
-    let mut shown: String = text.chars().take(LONGEST).flat_map(char::escape_debug).collect();
-    if text.chars().nth(LONGEST).is_some() {
-        shown.push_str("...");
-    }
-    shown
-}

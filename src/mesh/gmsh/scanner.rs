@@ -2,7 +2,8 @@
 
 use std::str::FromStr;
 
-use super::error::{GmshError, Place, excerpt};
+use super::error::{GmshError, Place};
+use crate::problem::excerpt;
 
 /// Order of the bytes of a binary number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

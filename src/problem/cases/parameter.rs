@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::problem::nearest;
+use crate::problem::{excerpt, nearest};
 
 /// Why there is no such exact solution.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -138,7 +138,7 @@ impl Values {
             let Some(parameter) = known.iter().find(|p| p.name == name) else {
                 return Err(CaseError::UnknownParameter {
                     case,
-                    name: name.clone(),
+                    name: excerpt(name),
                     nearest: nearest(name, known.iter().map(|p| p.name)).map_or("", |(known, _)| known),
                     known: listed(known.iter().map(|p| p.name)),
                 });

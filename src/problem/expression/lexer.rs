@@ -2,9 +2,7 @@
 
 use super::ExpressionError;
 use super::program::Instruction;
-
-/// How many characters of a name or number an error shows.
-const SHOWN: usize = 24;
+use crate::problem::excerpt;
 
 /// How tightly an operator binds, loosest first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -43,14 +41,7 @@ pub(super) struct Lexeme<'a> {
 impl Lexeme<'_> {
     /// The text for an error message.
     pub(super) fn shown(&self) -> String {
-        shown(self.text)
-    }
-}
-
-fn shown(text: &str) -> String {
-    match text.char_indices().nth(SHOWN) {
-        Some((end, _)) => format!("{}...", &text[..end]),
-        None => text.to_string(),
+        excerpt(self.text)
     }
 }
 
@@ -130,12 +121,12 @@ impl<'a> Lexer<'a> {
     fn number(&mut self) -> Result<Lexeme<'a>, ExpressionError> {
         let Some(text) = number_prefix(self.rest) else {
             let end = self.rest.find(|c: char| !c.is_ascii_alphanumeric() && c != '.');
-            let text = shown(&self.rest[..end.unwrap_or(self.rest.len())]);
+            let text = excerpt(&self.rest[..end.unwrap_or(self.rest.len())]);
             return Err(ExpressionError::MalformedNumber { text, column: self.column });
         };
         let value: f64 = text.parse().expect("digits with a point and an exponent are a number");
         if !value.is_finite() {
-            return Err(ExpressionError::NumberOutOfRange { text: shown(text), column: self.column });
+            return Err(ExpressionError::NumberOutOfRange { text: excerpt(text), column: self.column });
         }
         Ok(self.take(text.len(), Token::Number(value)))
     }

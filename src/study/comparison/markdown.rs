@@ -42,7 +42,8 @@ pub fn markdown(rows: &[Row]) -> String {
 
 /// A positive number with so many digits, without a power of ten.
 fn rounded(value: f64, digits: usize) -> String {
-    let before_the_point = if value > 0.0 { value.log10().floor() as i32 + 1 } else { 1 };
+    let before_the_point =
+        if value > 0.0 && value.is_finite() { value.log10().floor() as i32 + 1 } else { 1 };
     let decimals = (digits as i32 - before_the_point).clamp(0, 9) as usize;
     format!("{value:.decimals$}")
 }
@@ -57,8 +58,14 @@ mod tests {
 
     #[test]
     fn numbers_keep_their_digits() {
-        let cases =
-            [(0.0123456, "0.0123"), (1.23456, "1.23"), (123.456, "123"), (12345.6, "12346"), (0.0, "0.00")];
+        let cases = [
+            (0.0123456, "0.0123"),
+            (1.23456, "1.23"),
+            (123.456, "123"),
+            (12345.6, "12346"),
+            (0.0, "0.00"),
+            (f64::INFINITY, "inf"),
+        ];
         for (value, expected) in cases {
             assert_eq!(rounded(value, 3), expected);
         }

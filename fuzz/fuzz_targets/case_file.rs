@@ -1,0 +1,2 @@
+#![no_main]
+membrane_contact_fuzz::fuzzer!("case_file");

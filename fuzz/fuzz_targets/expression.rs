@@ -1,0 +1,2 @@
+#![no_main]
+membrane_contact_fuzz::fuzzer!("expression");

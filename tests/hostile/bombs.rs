@@ -1,0 +1,251 @@
+//! Inputs that are made to break a reader: deep, long, or declaring what they do not hold.
+
+use std::io::{Cursor, Write};
+
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipWriter};
+
+/// Levels of what is nested.
+const DEEP: usize = 100_000;
+
+/// Length of what is long, bytes.
+const LONG: usize = 1 << 20;
+
+/// The inputs for a target, by what they are.
+pub fn of(target: &str) -> Vec<(String, Vec<u8>)> {
+    let bombs: Vec<(&str, Vec<u8>)> = match target {
+        "expression" => expressions().into_iter().map(|(name, text)| (name, text.into_bytes())).collect(),
+        "case_file" => case_files().into_iter().map(|(name, text)| (name, text.into_bytes())).collect(),
+        "gmsh" => gmsh_files(),
+        "checkpoint" => checkpoints(),
+        "answer" => answers(),
+        "rows" => vec![
+            ("many curves", curves()),
+            ("one long cell", vec![b'x'; LONG]),
+            ("cells", b",".repeat(LONG)),
+            ("rows", b"\n1".repeat(LONG / 2)),
+        ],
+        _ => Vec::new(),
+    };
+    bombs.into_iter().map(|(name, bytes)| (name.to_owned(), bytes)).collect()
+}
+
+fn expressions() -> Vec<(&'static str, String)> {
+    let nested = |open: &str, close: &str| format!("{}x{}", open.repeat(DEEP), close.repeat(DEEP));
+    let short = |open: &str, close: &str| format!("{}x{}", open.repeat(9_000), close.repeat(9_000));
+    vec![
+        ("parentheses", nested("(", ")")),
+        ("parentheses within the limit of bytes", short("(", ")")),
+        ("sums in parentheses within the limit of bytes", short("(1+", ")")),
+        ("calls", nested("sin(", ")")),
+        ("signs", nested("-", "")),
+        ("negations", nested("not ", "")),
+        ("powers", nested("x^", "")),
+        ("open parentheses", "(".repeat(60_000)),
+        ("a name", "a".repeat(60_000)),
+        ("a number", "9".repeat(60_000)),
+        ("an exponent", "1e999999999999999999999".into()),
+        ("a negative exponent", "1e-999999999999999999999".into()),
+    ]
+}
+
+/// What a case file is without its load.
+const CASE: &str = "[membranes]\ntension = [1, 3]\nload = ";
+
+fn case_files() -> Vec<(&'static str, String)> {
+    let in_case = |value: &str| format!("{CASE}{value}\n[domain]\nshape = \"square\"\n");
+    let deep = |open: &str, close: &str| format!("{}{}", open.repeat(DEEP), close.repeat(DEEP));
+    let many = |line: &dyn Fn(usize) -> String| (0..LONG / 16).map(line).collect::<String>();
+    vec![
+        ("a deep array", in_case(&deep("[", "]"))),
+        ("a deep table", in_case(&format!("{}1{}", "{a = ".repeat(DEEP), "}".repeat(DEEP)))),
+        ("a deep key", format!("{}a = 1", "a.".repeat(DEEP))),
+        ("a deep heading", format!("[{}a]", "a.".repeat(DEEP))),
+        ("a deep expression", in_case(&format!("[1, \"{}\"]", deep("(", ")")))),
+        ("a long expression", in_case(&format!("[1, \"{}\"]", "x+".repeat(LONG)))),
+        ("a long key", format!("{} = 1", "a".repeat(LONG))),
+        ("a long key beside others", format!("{} = 1\n{}", "a".repeat(LONG), in_case("[1, 2]"))),
+        ("a long unknown case", format!("case = \"{}\"", "\u{1f980}".repeat(LONG / 4))),
+        ("many keys", many(&|k| format!("k{k} = 1\n"))),
+        ("many dotted keys", many(&|k| format!("k{k}.a = 1\n"))),
+        ("many tables", many(&|k| format!("[k{k}]\na = 1\n"))),
+        ("many arrays of tables", many(&|_| "[[a]]\nb.c = 1\n".into())),
+        ("many empty arrays", in_case(&format!("[{}]", "[],".repeat(LONG / 3)))),
+        ("many inline tables", in_case(&format!("[{}]", "{a.b=1},".repeat(LONG / 8)))),
+        ("a polygon of many corners", polygon()),
+        ("huge numbers", "[membranes]\ntension = [1e999, 1]\nload = [99999999999999999999999, 1]".into()),
+        ("a count of 2^63", format!("{}[mesh]\ncells = 9223372036854775808\n", in_case("[1, 2]"))),
+        (
+            "the largest count",
+            format!(
+                "{}[mesh]\ncells = 9223372036854775807\nrefine = 9223372036854775807\n",
+                in_case("[1, 2]")
+            ),
+        ),
+    ]
+}
+
+/// Rows that have nothing in common.
+fn curves() -> Vec<u8> {
+    let columns = "problem,n,vertices,solver,origin,threads,status,certified,residual,iterations,setup_seconds,\
+                   solve_seconds,certify_seconds,total_seconds,work_unit_seconds,work_units,contact_vertices\n";
+    let rows: String = (0..LONG / 32).map(|k| format!("{k},,{k},,,,,true,,,,,,1,,,\n")).collect();
+    (columns.to_owned() + &rows).into_bytes()
+}
+
+fn polygon() -> String {
+    let corners: String = (0..LONG / 16).map(|k| format!("[{k}, {}], ", k * k)).collect();
+    format!("{CASE}[1, 2]\n[domain]\nshape = \"polygon\"\nvertices = [{corners}]\n[mesh]\nsize = 1\n")
+}
+
+fn gmsh_files() -> Vec<(&'static str, Vec<u8>)> {
+    const V2: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
+    const V4: &str = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n";
+    let binary = |version: &str, nodes: &[&[u8]]| {
+        let head = format!("$MeshFormat\n{version} 1 8\n");
+        [head.as_bytes(), &1i32.to_le_bytes(), b"\n$EndMeshFormat\n$Nodes\n", &nodes.concat()].concat()
+    };
+    let count = (1u64 << 63).to_le_bytes();
+    let one = 1u64.to_le_bytes();
+    let text = |text: String| text.into_bytes();
+    // As many as there are bytes left are accepted where each takes a byte at least.
+    let zeros = vec![b'0'; LONG];
+    vec![
+        ("2^63 nodes, 2.2", text(format!("{V2}$Nodes\n9223372036854775808\n1 0 0 0\n$EndNodes\n"))),
+        (
+            "2^63 nodes, 4.1",
+            text(format!("{V4}$Nodes\n1 9223372036854775808 1 9\n2 1 0 9223372036854775808\n")),
+        ),
+        ("2^63 blocks, 4.1", text(format!("{V4}$Nodes\n9223372036854775808 1 1 1\n"))),
+        ("2^64 nodes", text(format!("{V2}$Nodes\n18446744073709551616\n"))),
+        ("2^63 nodes, 2.2 binary", binary("2.2", &[b"9223372036854775808\n"])),
+        ("2^63 nodes, 4.1 binary", binary("4.1", &[&one, &count, &one, &count, &[0; 12], &count])),
+        ("as many nodes as bytes", [V2.as_bytes(), b"$Nodes\n1048576\n", &zeros].concat()),
+        ("as many nodes as bytes, 4.1 binary", {
+            let length = (LONG as u64).to_le_bytes();
+            binary("4.1", &[&one, &length, &one, &length, &[0; 12], &length, &zeros])
+        }),
+        ("empty blocks", {
+            let blocks = (LONG as u64 / 20).to_le_bytes();
+            binary("4.1", &[&blocks, &[0; 24], &vec![0; LONG]])
+        }),
+        (
+            "labels",
+            [
+                V2.as_bytes(),
+                b"$Nodes\n1\n1 0 0 0\n$EndNodes\n$Elements\n1\n1 2 1048576 ",
+                &b"0 ".repeat(LONG),
+            ]
+            .concat(),
+        ),
+        ("a long section", [V2.as_bytes(), b"$", &zeros, b"\n$End"].concat()),
+        ("sections that do not end", [V2.as_bytes(), b"$A\n", &b"\n$EndB".repeat(LONG / 6)].concat()),
+        ("many sections", [V2.as_bytes(), &b"$A\n$EndA\n".repeat(LONG / 9)].concat()),
+        ("a fan", text(fan(20_000))),
+        ("the same triangle", text(same_triangle(20_000))),
+    ]
+}
+
+/// Nodes of a circle, triangles from its centre.
+fn fan(n: usize) -> String {
+    let mut text = format!("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{}\n{} 0 0 0\n", n + 1, n + 1);
+    for k in 0..n {
+        let angle = std::f64::consts::TAU * k as f64 / n as f64;
+        text += &format!("{} {} {} 0\n", k + 1, angle.cos(), angle.sin());
+    }
+    text += &format!("$EndNodes\n$Elements\n{n}\n");
+    for k in 0..n {
+        text += &format!("{} 2 2 1 1 {} {} {}\n", k + 1, n + 1, k + 1, (k + 1) % n + 1);
+    }
+    text + "$EndElements\n"
+}
+
+/// One triangle again and again, with another one between two of them.
+fn same_triangle(n: usize) -> String {
+    let nodes = "4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 1 1 0\n";
+    let triangles = |k: usize| format!("{k} 2 2 1 1 {} 2 3\n", if k.is_multiple_of(2) { 1 } else { 4 });
+    let triangles: String = (1..=n).map(triangles).collect();
+    format!(
+        "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{nodes}$EndNodes\n$Elements\n{n}\n{triangles}$EndElements\n"
+    )
+}
+
+/// An array of `length` numbers by its header, with `data` behind it.
+fn array(kind: &str, shape: &str, data: &[u8]) -> Vec<u8> {
+    with_header(&format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': {shape}, }}\n"), data)
+}
+
+fn with_header(header: &str, data: &[u8]) -> Vec<u8> {
+    let length = (header.len() as u32).to_le_bytes();
+    [b"\x93NUMPY\x02\x00".as_slice(), &length, header.as_bytes(), data].concat()
+}
+
+/// An archive, compressed.
+fn deflated(arrays: &[(&str, Vec<u8>)]) -> Vec<u8> {
+    let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
+    for (name, array) in arrays {
+        let options = SimpleFileOptions::default().compression_method(CompressionMethod::Deflated);
+        zip.start_file(format!("{name}.npy"), options).expect("the name is new");
+        zip.write_all(array).expect("memory takes everything");
+    }
+    zip.finish().expect("memory takes everything").into_inner()
+}
+
+/// Headers that no archive should be believed.
+fn hostile_arrays() -> Vec<(&'static str, Vec<u8>)> {
+    let nested = |open: &str, close: &str, n: usize| format!("{}{}", open.repeat(n), close.repeat(n));
+    vec![
+        ("2^60 numbers", array("<f8", "(1152921504606846976,)", &[0; 64])),
+        ("lengths whose product overflows", array("<f8", "(4294967296, 4294967296)", &[0; 64])),
+        (
+            "hexadecimal lengths whose product overflows",
+            array("<f8", "(0xFFFFFFFFFF, 0xFFFFFFFFFF)", &[0; 64]),
+        ),
+        ("a header of 4 GiB", b"\x93NUMPY\x02\x00\xff\xff\xff\xff{".to_vec()),
+        ("a deep header", with_header(&nested("(", ")", 4_000), &[])),
+        ("a very deep header", with_header(&nested("[", "]", DEEP), &[])),
+        ("braces in braces", with_header(&nested("{", "}", 30), &[])),
+        ("tuples in tuples", with_header(&nested("(", ",)", 60), &[])),
+        ("signs", with_header(&"-".repeat(9_000), &[])),
+        ("a long number", with_header(&"9".repeat(9_000), &[])),
+        ("numbers of any size", array("|S999999999999", "(4,)", &[0; 64])),
+        ("numbers of no size", array("|V0", "(999999999999,)", &[0; 64])),
+    ]
+}
+
+fn checkpoints() -> Vec<(&'static str, Vec<u8>)> {
+    let zeros = |n: usize| array("<f8", &format!("({n},)"), &vec![0; 8 * n]);
+    let marks = |n: usize| array("<i8", &format!("({n},)"), &vec![0; 8 * n]);
+    let ones = |n: usize| array("<i8", &format!("({n},)"), &1i64.to_le_bytes().repeat(n));
+    let n = LONG / 8;
+    let bomb = ["u1", "u2", "lambda", "tolerance"].map(|name| (name, zeros(n)));
+    let bomb = [vec![("marked_counts", marks(n)), ("marked", marks(n))], bomb.to_vec()].concat();
+    let levels = |counts: Vec<u8>| [counts, marks(n), zeros(n), zeros(n), zeros(n), zeros(1)].concat();
+    let mut all = hostile_arrays();
+    all.extend([
+        ("a bomb of zeros", deflated(&bomb)),
+        ("levels without marks", levels(marks(n))),
+        ("levels with one mark each", levels(ones(n))),
+        ("a thousand levels with one mark each", levels(ones(1000))),
+        ("the same triangle marked again and again", levels(array("<i8", "(1,)", &(n as i64).to_le_bytes()))),
+    ]);
+    all
+}
+
+fn answers() -> Vec<(&'static str, Vec<u8>)> {
+    let zeros = array("<f8", &format!("({LONG},)"), &vec![0; 8 * LONG]);
+    let mut all = hostile_arrays();
+    all.extend([
+        ("a bomb of zeros", deflated(&[("x", zeros.clone()), ("y", zeros)])),
+        ("a compressed header of many bytes", deflated(&[("x", with_header(&" ".repeat(LONG), &[]))])),
+        (
+            "ends of archives",
+            [
+                b"PK\x03\x04".as_slice(),
+                &b"PK\x05\x06\0\0\0\0\xff\xff\xff\xff\xff\xff\xff\xff\0\0\0\0\0\0".repeat(LONG / 22),
+            ]
+            .concat(),
+        ),
+    ]);
+    all
+}

@@ -1,0 +1,45 @@
+//! What a study goes on from: a checkpoint of its own, and nothing else, whatever the file says.
+
+use membrane_contact::mesh::{Pattern, rectangle};
+use membrane_contact::problem::ContactProblem;
+use membrane_contact::solver::{Auto, SolverOptions};
+use membrane_contact::study::{AdaptiveStudy, Checkpoint, Tolerance};
+
+/// A study of few triangles, before its first level.
+fn small_study() -> AdaptiveStudy {
+    let problem = ContactProblem::builder().tension(1.0, 3.0).load(-15.0, 10.0).height(0.1).build();
+    let problem = problem.expect("the data are in range");
+    let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [2, 2], Pattern::Crossed).expect("a square");
+    let options = SolverOptions::default();
+    AdaptiveStudy::new(problem, None, None, mesh, Box::new(Auto), options, Tolerance::Fixed(1e-8))
+}
+
+type Change<'a> = &'a dyn Fn(&mut Checkpoint);
+
+#[test]
+fn only_a_checkpoint_of_the_study_is_taken_up() {
+    let mut study = small_study();
+    study.next_level().expect("it is solved");
+    study.next_level().expect("it is solved");
+    let own = study.checkpoint().expect("there is a solution");
+    let is_taken = |change: Change| {
+        let mut checkpoint = own.clone();
+        change(&mut checkpoint);
+        small_study().resume(checkpoint).expect("the problem can be posed")
+    };
+    assert!(is_taken(&|_| {}));
+    let changes: [(&str, Change); 9] = [
+        ("a tolerance that certifies anything", &|c| c.tolerance = f64::INFINITY),
+        ("a tolerance that is none", &|c| c.tolerance = f64::NAN),
+        ("a tolerance that is looser than that of the study", &|c| c.tolerance *= 2.0),
+        ("another displacement", &|c| c.displacement[0][0] = 1e300),
+        ("a displacement that is no number", &|c| c.displacement[1][4] = f64::NAN),
+        ("a displacement of fewer vertices", &|c| c.displacement[0].truncate(1)),
+        ("a triangle that is not there", &|c| c.marked[0].push(usize::MAX)),
+        ("a refinement of nothing", &|c| c.marked.push(Vec::new())),
+        ("refinements without end", &|c| c.marked = vec![vec![0]; 1 << 20]),
+    ];
+    for (what, change) in changes {
+        assert!(!is_taken(change), "{what}");
+    }
+}
