@@ -161,8 +161,9 @@ impl Push {
         let mut lambda = vec![0.0; d.mesh().points().len()];
         let mut rest_sq = [0.0; 2];
         for (k, &a) in d.interior().iter().enumerate() {
-            // Where there is a gap, an action would cost its product with the gap.
-            if gap(a) / scales.displacement < action.lambda[k] / scales.force_density {
+            // Where there is a gap, an action would cost its product with the gap; rounding of a large gap is none.
+            let is_action = action.lambda[k] > action.lambda_rounding(d, k);
+            if is_action && gap(a) / scales.displacement < action.lambda[k] / scales.force_density {
                 lambda[a] = action.lambda[k].max(0.0);
             }
             (0..2).for_each(|i| {
