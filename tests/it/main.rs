@@ -14,6 +14,8 @@ mod bad_input;
 mod bench;
 mod custom_backend;
 mod exact;
+mod hostile_numbers;
+mod invariance;
 mod layers;
 #[cfg(feature = "cli")]
 mod plate;
@@ -21,6 +23,8 @@ mod plate;
 mod program;
 #[cfg(feature = "cli")]
 mod readme;
+#[cfg(feature = "cli")]
+mod same_bytes;
 mod stability;
 #[cfg(feature = "cli")]
 mod theory;

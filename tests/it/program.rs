@@ -44,7 +44,7 @@ fn folder_with(case: &str) -> TempDir {
 }
 
 /// The program, to be run in `folder` with these arguments.
-fn command(folder: &Path, arguments: &str) -> Command {
+pub fn command(folder: &Path, arguments: &str) -> Command {
     let mut command = Command::new(assert_cmd::cargo::cargo_bin!("membranes"));
     command.current_dir(folder).args(arguments.split_whitespace()).stdin(Stdio::null());
     command
