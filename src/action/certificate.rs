@@ -4,6 +4,7 @@ use thiserror::Error;
 
 use super::{Action, ContactSolution, Residuals};
 use crate::discretization::Discretization;
+use crate::qp::Status;
 use crate::solver::{Candidate, Statistics};
 
 /// Checks a candidate against `K`, `F`, `g` and hands it out as a solution when every residual, beyond what rounding of
@@ -45,6 +46,18 @@ pub struct Rejected {
     pub residuals: Option<Residuals>,
     /// How the candidate was found.
     pub statistics: Statistics,
+}
+
+impl Rejected {
+    /// What to do about it.
+    pub fn remedy(&self) -> &'static str {
+        match self.statistics.status {
+            Status::Stalled => {
+                "choose another solver (active-set needs no good triangles), or a larger tolerance"
+            }
+            _ => "allow more iterations or time, or a larger tolerance, or keep the polish on",
+        }
+    }
 }
 
 /// Why a candidate is rejected.

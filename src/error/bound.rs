@@ -138,8 +138,12 @@ impl ErrorBound {
     }
 
     /// A guaranteed bound of the error relative to the energy norm of the exact solution, which is
-    /// `|||u_h|||` less the bound at least; `None` when the bound is not smaller than that.
+    /// `|||u_h|||` less the bound at least; `None` when the bound is not smaller than that. Zero where there is no error, also
+    /// of membranes at rest.
     pub fn relative(&self) -> Option<f64> {
+        if self.total == 0.0 {
+            return Some(0.0);
+        }
         let least = self.energy_norm - self.total;
         (least > 0.0).then(|| self.total / least)
     }

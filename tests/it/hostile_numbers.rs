@@ -2,6 +2,8 @@
 
 mod outputs;
 mod problems;
+#[cfg(feature = "cli")]
+mod program;
 mod scaling;
 mod truth;
 
