@@ -165,12 +165,16 @@ fn levels_of_both_kinds() {
 
 #[test]
 #[ignore = "long: `bash tests/long.sh`"]
-fn every_number_of_threads_in_every_run() {
-    for work in [&SQUARE, &HOLES, &LEVELS] {
-        same_with(work, &[1, 2, 2, 3, 4, 4]);
-    }
+fn a_square_with_70_000_vertices_with_every_number_of_threads() {
     let finer = SQUARE.case.replace("cells = 150", "cells = 264");
     same_with(&Work { case: finer.leak(), ..SQUARE }, &[2, 4]);
+}
+
+#[test]
+#[ignore = "long: `bash tests/long.sh`"]
+fn holes_and_levels_with_every_number_of_threads_and_again() {
+    same_with(&HOLES, &[1, 2, 3, 4]);
+    same_with(&LEVELS, &[1, 2, 3, 4]);
 }
 
 /// The twin: another load is seen in every file that depends on it, and in no other.
