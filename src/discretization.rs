@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use crate::fem::{LoadMoments, NotFinite, stiffness_around};
 use crate::mesh::{Mesh, VertexKind, VertexTriangles};
-use crate::problem::ContactProblem;
+use crate::problem::{ContactProblem, Number};
 
 /// Tensions, displacements and loads must lie between the inverse of this and this: energies must not overflow.
 const LARGEST: f64 = 1e40;
@@ -205,7 +205,7 @@ impl Scales {
         let sizes = [
             ("the tension mu1 is", tension[0]),
             ("the tension mu2 is", tension[1]),
-            ("the loads have the size", self.force_density),
+            ("the forces per area have the size", self.force_density),
             ("the displacements have the size", self.displacement),
         ];
         match sizes.into_iter().find(|(_, value)| !(1.0 / LARGEST..=LARGEST).contains(value)) {
@@ -261,7 +261,7 @@ pub enum DiscretizationError {
         source: NotFinite,
     },
     /// The height is negative or not finite at a boundary vertex.
-    #[error("height g is {value} at the boundary vertex {vertex} ({}, {}): it must be finite and >= 0 on the whole boundary (where a formula is zero up to rounding, write max(0, ...))", point[0], point[1])]
+    #[error("height g is {} at the boundary vertex {vertex} ({}, {}): it must be finite and >= 0 on the whole boundary (where a formula is zero up to rounding, write max(0, ...))", Number(*value), Number(point[0]), Number(point[1]))]
     Height {
         /// The vertex, counted from 0.
         vertex: usize,

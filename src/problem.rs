@@ -10,6 +10,7 @@ mod cases;
 mod domain;
 mod expression;
 mod function;
+mod number;
 mod spelling;
 
 pub use cases::{Case, CaseError, ExactSolution, Interface, Parameter, Range};
@@ -18,6 +19,7 @@ pub(crate) use domain::ring_area;
 pub use expression::{Expression, ExpressionError};
 pub use function::Function;
 
+pub(crate) use number::Number;
 pub(crate) use spelling::{excerpt, nearest};
 
 use thiserror::Error;
@@ -131,7 +133,7 @@ impl ContactProblemBuilder {
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum ProblemError {
     /// A tension out of range.
-    #[error("tension mu{membrane} is {value}: give a positive, finite number")]
+    #[error("tension mu{membrane} is {}: give a positive, finite number", Number(*value))]
     Tension {
         /// 1 or 2.
         membrane: usize,
@@ -139,7 +141,7 @@ pub enum ProblemError {
         value: f64,
     },
     /// A constant load out of range.
-    #[error("load f{membrane} is {value}: give a finite number")]
+    #[error("load f{membrane} is {}: give a finite number", Number(*value))]
     Load {
         /// 1 or 2.
         membrane: usize,
@@ -148,7 +150,8 @@ pub enum ProblemError {
     },
     /// A constant height out of range.
     #[error(
-        "height g is {value}: give a number >= 0, so that membrane 1 is fixed above membrane 2 (or exchange the membranes)"
+        "height g is {}: give a number >= 0, so that membrane 1 is fixed above membrane 2 (or exchange the membranes)",
+        Number(*value)
     )]
     Height {
         /// The value given.

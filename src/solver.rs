@@ -21,6 +21,7 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::discretization::Discretization;
+use crate::problem::Number;
 use crate::qp::{Answer, BackendError, Status};
 use cholesky::NotFactored;
 
@@ -184,7 +185,7 @@ pub enum SolverError {
     )]
     NotFactored,
     /// The tolerance is out of range.
-    #[error("the tolerance is {0}: give a number between 0 and 1")]
+    #[error("the tolerance is {}: give a number between 0 and 1", Number(*_0))]
     Tolerance(f64),
     /// The time limit is out of range.
     #[error("the time limit is {0} seconds: give a positive number")]

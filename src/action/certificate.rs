@@ -4,6 +4,7 @@ use thiserror::Error;
 
 use super::{Action, ContactSolution, Residuals};
 use crate::discretization::Discretization;
+use crate::qp::Status;
 use crate::solver::{Candidate, Statistics};
 
 /// Checks a candidate against `K`, `F`, `g` and hands it out as a solution when every residual, beyond what rounding of
@@ -47,6 +48,24 @@ pub struct Rejected {
     pub statistics: Statistics,
 }
 
+impl Rejected {
+    /// Of a solver that was not waited for any longer.
+    pub fn without_result(statistics: Statistics) -> Self {
+        Self { reason: Reason::NoResult, residuals: None, statistics }
+    }
+
+    /// What to do about it.
+    pub fn remedy(&self) -> &'static str {
+        match self.statistics.status {
+            _ if self.reason == Reason::NoResult => "allow more time, or choose another solver",
+            Status::Stalled => {
+                "choose another solver (active-set needs no good triangles), or a larger tolerance"
+            }
+            _ => "allow more iterations or time, or a larger tolerance, or keep the polish on",
+        }
+    }
+}
+
 /// Why a candidate is rejected.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum Reason {
@@ -66,11 +85,4 @@ pub enum Reason {
     /// There is no candidate.
     #[error("it has not come back within its time")]
     NoResult,
-}
-
-impl Rejected {
-    /// Of a solver that was not waited for any longer.
-    pub fn without_result(statistics: Statistics) -> Self {
-        Self { reason: Reason::NoResult, residuals: None, statistics }
-    }
 }

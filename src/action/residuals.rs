@@ -107,6 +107,11 @@ impl Residuals {
         }
     }
 
+    /// The largest of the checks beyond rounding: what is held against the tolerance.
+    pub fn beyond_rounding(&self) -> f64 {
+        self.named().into_iter().map(|(_, residual)| residual.beyond_rounding).fold(0.0, f64::max)
+    }
+
     /// The checks that make the certificate, with their names.
     pub fn named(&self) -> [(&'static str, Residual); 7] {
         [

@@ -135,5 +135,6 @@ fn energy(d: &Discretization, displacement: &[Vec<f64>; 2]) -> f64 {
 fn sum(count: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
     let of_block = |block: usize| (block * BLOCK..((block + 1) * BLOCK).min(count)).map(&term).sum::<f64>();
     let blocks: Vec<f64> = (0..count.div_ceil(BLOCK)).into_par_iter().map(of_block).collect();
-    blocks.into_iter().sum()
+    // From zero: `sum` makes a negative zero of nothing.
+    blocks.into_iter().fold(0.0, |sum, block| sum + block)
 }

@@ -190,6 +190,29 @@ fn an_early_stop_is_seen_and_mended_by_the_polish() {
 }
 
 #[test]
+fn what_is_held_against_the_tolerance_is_the_largest_residual_beyond_rounding() {
+    let mesh = mesh();
+    let d = Discretization::new(&problem(0.0), &mesh).unwrap();
+    let sound = certify(&d, solve(&d, true, None), TOLERANCE).unwrap();
+    assert!(sound.residuals().beyond_rounding() <= TOLERANCE);
+    let rejected = certify(&d, solve(&d, false, Some(3)), TOLERANCE).unwrap_err();
+    let residuals = rejected.residuals.expect("there is something to measure");
+    assert!(residuals.beyond_rounding() >= residuals.complementarity.beyond_rounding);
+    assert!(residuals.beyond_rounding() > SEEN);
+}
+
+#[test]
+fn the_remedy_follows_from_why_the_solver_stopped() {
+    let mesh = mesh();
+    let d = Discretization::new(&problem(0.0), &mesh).unwrap();
+    let mut stopped = solve(&d, false, Some(3));
+    let remedy = |candidate: Candidate| certify(&d, candidate, TOLERANCE).unwrap_err().remedy();
+    assert!(remedy(stopped.clone()).contains("more iterations"));
+    stopped.statistics.status = crate::qp::Status::Stalled;
+    assert!(remedy(stopped).contains("another solver"));
+}
+
+#[test]
 fn vectors_of_the_wrong_length_are_rejected() {
     let mesh = mesh();
     let d = Discretization::new(&problem(0.0), &mesh).unwrap();

@@ -11,7 +11,7 @@ use toml::Value;
 use super::Failure;
 use super::section::{Section, as_number};
 use crate::mesh::{MeshSize, Pattern};
-use crate::problem::{Case, ContactProblem, Domain, ExactSolution, Expression, Function, excerpt};
+use crate::problem::{Case, ContactProblem, Domain, ExactSolution, Expression, Function, Number, excerpt};
 use crate::study::Tolerance;
 
 /// Cells of a structured mesh when the case file does not say.
@@ -431,6 +431,6 @@ fn tolerance(value: &Value) -> Result<Tolerance, String> {
     if number > 0.0 && number < 1.0 {
         Ok(Tolerance::Fixed(number))
     } else {
-        Err(format!("= {number} is out of range: choose between 0 and 1"))
+        Err(format!("= {} is out of range: choose between 0 and 1", Number(number)))
     }
 }

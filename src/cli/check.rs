@@ -4,7 +4,7 @@ use super::args::CheckArguments;
 use super::case_file::BackendName;
 use super::progress::Progress;
 use super::setup::{Setup, options, solver};
-use super::terminal::{grouped, print};
+use super::terminal::{fixed, grouped, print};
 use super::watch::Watch;
 use super::{Failure, SolverSettings, answer};
 use crate::action::{ContactSolution, Rejected, Residuals, certify};
@@ -178,9 +178,9 @@ fn table(columns: &[Column]) -> String {
     }
     text += &row("(overlap)", &|k| residuals[k].map_or("-".into(), |r| format!("{:.1e}", r.overlap)));
     text += &row("certified", &|k| if columns[k].result.is_ok() { "yes".into() } else { "no".into() });
-    text += &row("energy", &|k| solved(k, &|s| format!("{:.6}", s.energy())));
+    text += &row("energy", &|k| solved(k, &|s| fixed(s.energy(), 6)));
     text += &row("contact vertices", &|k| {
         solved(k, &|s| grouped(s.contact().iter().filter(|&&contact| contact).count()))
     });
-    text + &row("total force", &|k| solved(k, &|s| format!("{:.6}", s.total_force())))
+    text + &row("total force", &|k| solved(k, &|s| fixed(s.total_force(), 6)))
 }

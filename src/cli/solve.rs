@@ -8,9 +8,9 @@ use super::args::SolveArguments;
 use super::case_file::CaseFile;
 use super::progress::Progress;
 use super::setup::{Results, Setup, make_folder, options, solver};
-use super::terminal::{fields, grouped, print};
+use super::terminal::{fields, fixed, grouped, print};
 use super::watch::Watch;
-use crate::action::{ContactSolution, Reason, Rejected};
+use crate::action::{ContactSolution, Rejected};
 use crate::discretization::Discretization;
 use crate::error::ErrorBound;
 use crate::fem::element_loads;
@@ -117,11 +117,7 @@ fn reject(name: &str, folder: &Path, summary: &Summary, rejected: &Rejected) -> 
     if let Err(failure) = written {
         return failure;
     }
-    let remedy = match rejected.reason {
-        Reason::NoResult => "allow more time (--time-limit), or take another solver (--backend)",
-        _ => "allow more iterations or time, or a larger tolerance, or keep the polish on",
-    };
-    let status = rejected.statistics.status.as_str();
+    let (status, remedy) = (rejected.statistics.status.as_str(), rejected.remedy());
     Failure::NotCertified(format!("{name}: {rejected} (status {status}); {remedy}"))
 }
 
@@ -188,7 +184,7 @@ fn write_dual(
 
 /// The summary for the eye.
 fn table(summary: &Summary, polish: Option<PolishReport>, folder: &Path) -> String {
-    let number = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:.8}"));
+    let number = |value: Option<f64>| value.map_or_else(String::new, |value| fixed(value, 8));
     let interior = summary.unknowns / 2;
     let contact = summary.contact_vertices.unwrap_or(0);
     let worst = summary.residuals.as_ref().map_or(f64::NAN, |r| {
@@ -210,16 +206,23 @@ fn table(summary: &Summary, polish: Option<PolishReport>, folder: &Path) -> Stri
         ("solver", solver_line(summary)),
         ("chosen", summary.choice.clone().unwrap_or_default()),
         ("polish", polish.map_or_else(String::new, polish_line)),
-        ("certified", format!("largest residual {worst:.1e} (tolerance {:.0e})", summary.tolerance)),
+        (
+            "certified",
+            format!(
+                "largest residual {worst:.1e}{} (tolerance {:.0e})",
+                beyond(summary, worst),
+                summary.tolerance
+            ),
+        ),
         ("error", error_line(summary)),
         ("energy", number(summary.energy)),
         (
             "contact",
             format!(
-                "{} of {} interior vertices, area {:.6}",
+                "{} of {} interior vertices, area {}",
                 grouped(contact),
                 grouped(interior),
-                summary.contact_area.unwrap_or(0.0)
+                fixed(summary.contact_area.unwrap_or(0.0), 6)
             ),
         ),
         ("total force", number(summary.total_force)),
@@ -238,6 +241,14 @@ fn table(summary: &Summary, polish: Option<PolishReport>, folder: &Path) -> Stri
     ];
     let rows: Vec<_> = rows.into_iter().filter(|(_, value)| !value.is_empty()).collect();
     format!("{}\n{}", summary.title, fields(&rows))
+}
+
+/// What of a residual that is larger than the tolerance is more than rounding.
+fn beyond(summary: &Summary, worst: f64) -> String {
+    match summary.residual_beyond_rounding {
+        Some(beyond) if worst > summary.tolerance => format!(", {beyond:.1e} beyond rounding"),
+        _ => String::new(),
+    }
 }
 
 fn solver_line(summary: &Summary) -> String {

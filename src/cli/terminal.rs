@@ -21,6 +21,13 @@ pub(super) fn fields(rows: &[(&str, String)]) -> String {
     rows.iter().map(|(name, value)| format!("  {name:width$}  {value}\n")).collect()
 }
 
+/// A number with so many decimals (at least four), or in powers of ten where they would be none or many.
+pub(super) fn fixed(value: f64, decimals: usize) -> String {
+    let moderate = value == 0.0 || (1e-4..1e9).contains(&value.abs());
+    // Exponents take up to four places.
+    if moderate { format!("{value:.decimals$}") } else { format!("{value:.0$e}", decimals - 4) }
+}
+
 /// A number of bytes or things, in groups of three digits.
 pub(super) fn grouped(n: usize) -> String {
     let digits = n.to_string();
@@ -42,6 +49,12 @@ mod tests {
     fn digits_are_grouped_from_the_right() {
         let texts: Vec<String> = [0, 999, 1000, 65_536, 1_050_625].into_iter().map(grouped).collect();
         assert_eq!(texts, ["0", "999", "1,000", "65,536", "1,050,625"]);
+    }
+
+    #[test]
+    fn numbers_of_all_sizes_show_digits() {
+        let texts = [0.0, -1.5, 1e-4, 9.9e-5, -104_446_972_117.7, 8.4e-300].map(|value| fixed(value, 6));
+        assert_eq!(texts, ["0.000000", "-1.500000", "0.000100", "9.90e-5", "-1.04e11", "8.40e-300"]);
     }
 
     #[test]

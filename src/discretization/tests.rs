@@ -242,8 +242,8 @@ fn sizes_out_of_range_are_refused() {
     let range = ", out of the range from 1e-40 to 1e40: choose other units";
     assert_eq!(message(1e308, 0.0.into(), 1.0), Err(format!("the tension mu1 is 1e308{range}")));
     assert_eq!(message(1.0, 0.0.into(), 1e300), Err(format!("the displacements have the size 1e300{range}")));
-    assert!(message(1.0, 1e300.into(), 0.0).unwrap_err().starts_with("the loads have the size 1"));
-    assert!(message(1.0, 1e-300.into(), 1.0).unwrap_err().starts_with("the loads have the size"));
+    assert!(message(1.0, 1e300.into(), 0.0).unwrap_err().starts_with("the forces per area have the size 1"));
+    assert!(message(1.0, 1e-300.into(), 1.0).unwrap_err().starts_with("the forces per area have the size"));
     assert!(message(1e-30, 1e30.into(), 0.0).unwrap_err().starts_with("the displacements have the size"));
     // Loads that overflow to infinities of either sign leave a NaN at every vertex.
     let large = rectangle([-1e6, -1e6], [1e6, 1e6], [1, 1], Pattern::Crossed).unwrap();

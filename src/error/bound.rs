@@ -138,8 +138,12 @@ impl ErrorBound {
     }
 
     /// A guaranteed bound of the error relative to the energy norm of the exact solution, which is
-    /// `|||u_h|||` less the bound at least; `None` when the bound is not smaller than that.
+    /// `|||u_h|||` less the bound at least; `None` when the bound is not smaller than that. Zero where there is no error, also
+    /// of membranes at rest.
     pub fn relative(&self) -> Option<f64> {
+        if self.total == 0.0 {
+            return Some(0.0);
+        }
         let least = self.energy_norm - self.total;
         (least > 0.0).then(|| self.total / least)
     }
@@ -161,8 +165,9 @@ impl Push {
         let mut lambda = vec![0.0; d.mesh().points().len()];
         let mut rest_sq = [0.0; 2];
         for (k, &a) in d.interior().iter().enumerate() {
-            // Where there is a gap, an action would cost its product with the gap.
-            if gap(a) / scales.displacement < action.lambda[k] / scales.force_density {
+            // Where there is a gap, an action would cost its product with the gap; rounding of a large gap is none.
+            let is_action = action.lambda[k] > action.lambda_rounding(d, k);
+            if is_action && gap(a) / scales.displacement < action.lambda[k] / scales.force_density {
                 lambda[a] = action.lambda[k].max(0.0);
             }
             (0..2).for_each(|i| {

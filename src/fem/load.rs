@@ -5,11 +5,11 @@ use thiserror::Error;
 
 use super::moments::LoadMoments;
 use crate::mesh::{Mesh, VertexTriangles};
-use crate::problem::Function;
+use crate::problem::{Function, Number};
 
 /// A function has no finite value at a quadrature point.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
-#[error("is {value} at the point ({}, {})", point[0], point[1])]
+#[error("is {} at the point ({}, {})", Number(*value), Number(point[0]), Number(point[1]))]
 pub struct NotFinite {
     /// Where.
     pub point: [f64; 2],

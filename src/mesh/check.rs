@@ -10,7 +10,8 @@ use thiserror::Error;
 
 use super::adjacency::{HalfEdge, HalfEdges};
 use super::quality::angles;
-use super::{Mesh, VertexKind, distance_sq, twice_signed_area};
+use super::{Mesh, Refinement, VertexKind, distance_sq, twice_signed_area};
+use crate::problem::Number;
 pub(super) use boundary::resolution;
 use boundary::{Boundary, BoundaryEdge};
 use pieces::check_pieces;
@@ -19,7 +20,7 @@ use pieces::check_pieces;
 /// coordinates moves that fraction by about 1e-16; a sliver of 0.01 degrees has 1.7e-4.
 const MIN_RELATIVE_AREA: f64 = 1e-12;
 
-/// Coordinates beyond this are refused, and triangles below its inverse are degenerate: products of areas, loads and
+/// Coordinates beyond this are refused, and triangles below its inverse: products of areas, loads and
 /// displacements must not overflow.
 const MAX_COORDINATE: f64 = 1e40;
 
@@ -59,6 +60,12 @@ pub enum MeshError {
         triangle: usize,
         /// Its corners.
         corners: [usize; 3],
+    },
+    /// A triangle of no size that can be computed with.
+    #[error("triangle {triangle} is smaller than {:e}: choose another unit of length", 1.0 / MAX_COORDINATE)]
+    Tiny {
+        /// The triangle.
+        triangle: usize,
     },
     /// The same triangle twice.
     #[error("triangles {first} and {second} are the same (vertices {}, {}, {}): remove one", corners[0], corners[1], corners[2])]
@@ -132,9 +139,9 @@ pub enum MeshError {
         /// A triangle at the second.
         triangle: usize,
     },
-    /// A triangle cannot be bisected any more.
+    /// A triangle cannot be divided any more.
     #[error(
-        "triangle {triangle} (vertices {}, {}, {}) cannot be bisected: the size of the mesh or of its coordinates leaves too few digits for its parts; bisect less often there", corners[0], corners[1], corners[2]
+        "triangle {triangle} (vertices {}, {}, {}) cannot be divided: the size of the mesh or of its coordinates leaves too few digits for its parts; refine less often there", corners[0], corners[1], corners[2]
     )]
     TooSmall {
         /// The triangle.
@@ -144,7 +151,8 @@ pub enum MeshError {
     },
     /// A mesh cannot be graded like this.
     #[error(
-        "the mesh cannot be graded with the exponent {exponent}: give a number >= 1, and a domain that is a square around the point or has it as its corner"
+        "the mesh cannot be graded with the exponent {}: give a number >= 1, and a domain that is a square around the point or has it as its corner",
+        Number(*exponent)
     )]
     NotGraded {
         /// The exponent.
@@ -158,6 +166,7 @@ impl MeshError {
         match *self {
             Self::NoSuchVertex { triangle, .. }
             | Self::Degenerate { triangle, .. }
+            | Self::Tiny { triangle }
             | Self::OverlapAtVertex { triangle, .. }
             | Self::HangingVertex { triangle, .. }
             | Self::TooSmall { triangle, .. }
@@ -202,6 +211,22 @@ impl Mesh {
     }
 }
 
+impl Mesh {
+    /// Divides every triangle into four, unless rounding leaves a part no area.
+    ///
+    /// # Errors
+    /// [`MeshError::TooSmall`], naming the triangle.
+    pub(super) fn refine_checked(&self) -> Result<Refinement, MeshError> {
+        let refinement = self.refine();
+        let fine = &refinement.mesh;
+        let has_area = |&t: &usize| sense(fine.corners(t)) == Sense::Counterclockwise;
+        match (0..fine.triangles.len()).find(|t| !has_area(t)).map(|part| part / 4) {
+            Some(triangle) => Err(MeshError::TooSmall { triangle, corners: self.triangles[triangle] }),
+            None => Ok(refinement),
+        }
+    }
+}
+
 fn check_points(points: &[[f64; 2]]) -> Result<(), MeshError> {
     match points.iter().position(|point| !point.iter().all(|x| x.abs() < MAX_COORDINATE)) {
         Some(vertex) => Err(MeshError::Coordinates { vertex, point: points[vertex] }),
@@ -222,6 +247,7 @@ fn orient(points: &[[f64; 2]], triangles: &mut [[usize; 3]]) -> Result<(), MeshE
             Sense::Counterclockwise => {}
             Sense::Clockwise => corners.swap(1, 2),
             Sense::Degenerate => return Err(MeshError::Degenerate { triangle, corners: *corners }),
+            Sense::Tiny => return Err(MeshError::Tiny { triangle }),
         }
     }
     Ok(())
@@ -234,13 +260,16 @@ pub(super) enum Sense {
     Clockwise,
     /// It has no area that rounding leaves.
     Degenerate,
+    /// Its longest edge is too short.
+    Tiny,
 }
 
 pub(super) fn sense([a, b, c]: [[f64; 2]; 3]) -> Sense {
     let longest_sq = distance_sq(a, b).max(distance_sq(b, c)).max(distance_sq(c, a));
     let area = twice_signed_area([a, b, c]);
-    let tiny = !(longest_sq * MAX_COORDINATE * MAX_COORDINATE > 1.0);
-    if tiny || !(area.abs() > MIN_RELATIVE_AREA * longest_sq) {
+    if a != b && b != c && c != a && longest_sq * MAX_COORDINATE * MAX_COORDINATE <= 1.0 {
+        Sense::Tiny
+    } else if !(area.abs() > MIN_RELATIVE_AREA * longest_sq) {
         Sense::Degenerate
     } else if area > 0.0 {
         Sense::Counterclockwise

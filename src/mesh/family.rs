@@ -55,7 +55,7 @@ impl MeshFamily {
     pub fn refine(&mut self) -> Result<Vec<[usize; 2]>, MeshError> {
         let (parents, mesh) = match &mut self.shape {
             Shape::Polygon => {
-                let Refinement { mesh, parents } = self.mesh.refine();
+                let Refinement { mesh, parents } = self.mesh.refine_checked()?;
                 (parents, mesh)
             }
             Shape::Disk(circle) => {
@@ -80,7 +80,7 @@ mod tests {
     use std::f64::consts::PI;
 
     use super::*;
-    use crate::mesh::{Pattern, disk, l_shape};
+    use crate::mesh::{Pattern, disk, l_shape, rectangle};
 
     #[test]
     fn a_disk_stays_round_and_a_polygon_does_not() {
@@ -99,6 +99,18 @@ mod tests {
         }
         assert!((straight.mesh().area() - coarse.area()).abs() < 1e-12);
         assert!(round.mesh().quality().min_angle > 30.0);
+    }
+
+    /// A small square far from the origin: its coordinates have digits for 43 cells along a side, not for more.
+    #[test]
+    fn refinement_ends_where_coordinates_have_no_digits_left() {
+        let far = [1e6; 2];
+        let mesh = rectangle(far, far.map(|x| x + 1e-8), [1; 2], Pattern::Right).unwrap();
+        let mut family = MeshFamily::polygonal(mesh);
+        let refinements = (0..10).take_while(|_| family.refine().is_ok()).count();
+        assert!((4..8).contains(&refinements), "{refinements} refinements");
+        assert!(matches!(family.refine(), Err(MeshError::TooSmall { .. })));
+        assert!(family.mesh().quality().min_angle > 0.0, "the last mesh stays");
     }
 
     #[test]

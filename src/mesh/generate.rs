@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use super::polygon::{MAX_MIN_ANGLE, largest_triangle, polygon};
 use super::{Mesh, Pattern, disk, l_shape, rectangle};
-use crate::problem::Domain;
+use crate::problem::{Domain, Number};
 
 /// More vertices than this are refused: the system of a mesh of this size needs about 64 GiB.
 pub(crate) const MAX_VERTICES: f64 = 5e7;
@@ -39,7 +39,7 @@ pub enum GenerateError {
     #[error("a polygon has no structured mesh: give `size`, the target edge length, in place of `cells`")]
     StructuredPolygon,
     /// The domain's extent is not positive or not finite.
-    #[error("the domain has {quantity} {value}: it must be positive and finite")]
+    #[error("the domain has {quantity} {}: it must be positive and finite", Number(*value))]
     Extent {
         /// Which.
         quantity: &'static str,
@@ -50,13 +50,13 @@ pub enum GenerateError {
     #[error("the domain has a coordinate that is not finite")]
     NotFinite,
     /// Target edge length out of range.
-    #[error("size is {size}: the target edge length must be positive and finite")]
+    #[error("size is {}: the target edge length must be positive and finite", Number(*size))]
     Size {
         /// The value given.
         size: f64,
     },
     /// Least angle out of range.
-    #[error("min_angle is {min_angle}: give degrees between 0 and {MAX_MIN_ANGLE}")]
+    #[error("min_angle is {}: give degrees between 0 and {MAX_MIN_ANGLE}", Number(*min_angle))]
     MinAngle {
         /// The value given.
         min_angle: f64,
@@ -78,7 +78,7 @@ pub enum GenerateError {
         problem: &'static str,
     },
     /// Rings cross each other or themselves.
-    #[error("edges of the polygon cross: one of them runs from ({}, {}) to ({}, {})", from[0], from[1], to[0], to[1])]
+    #[error("edges of the polygon cross: one of them runs from ({}, {}) to ({}, {})", Number(from[0]), Number(from[1]), Number(to[0]), Number(to[1]))]
     Crossing {
         /// Start of the edge.
         from: [f64; 2],

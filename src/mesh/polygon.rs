@@ -108,6 +108,13 @@ fn checked_area(name: &str, ring: &[[f64; 2]]) -> Result<f64, GenerateError> {
     Ok(area)
 }
 
+/// Whether a ring passes through a point twice.
+fn has_twins(ring: &[[f64; 2]]) -> bool {
+    let mut points = ring.to_vec();
+    points.sort_by(|p, q| p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1])));
+    points.windows(2).any(|pair| pair[0] == pair[1])
+}
+
 /// The constrained Delaunay triangulation of all rings, before refinement.
 fn triangulate_rings(
     vertices: &[[f64; 2]],
@@ -127,7 +134,11 @@ fn triangulate_rings(
     })
     .map_err(|error| GenerateError::Coordinates { reason: error.to_string() })?;
     if cdt.num_vertices() < given {
-        return Err(GenerateError::Ring { ring: "the polygon".into(), problem: "has the same vertex twice" });
+        let mut rings = std::iter::once(vertices).chain(holes.iter().map(Vec::as_slice));
+        return Err(match rings.any(has_twins) {
+            true => GenerateError::Ring { ring: "the polygon".into(), problem: "has the same vertex twice" },
+            false => GenerateError::Holes,
+        });
     }
     match crossing {
         Some([a, b]) => {
@@ -175,7 +186,9 @@ mod tests {
             (polygon(&bow_tie, &[], 0.1, 25.0), "cross"),
             (polygon(&outer, &[square(0.9, 0.4, 0.2)], 0.1, 25.0), "cross"),
             (polygon(&outer, &[square(2.0, 2.0, 0.2)], 0.1, 25.0), "hole"),
-            (polygon(&outer, &[square(0.0, 0.0, 0.5)], 0.1, 25.0), "twice"),
+            (polygon(&[outer.clone(), outer.clone()].concat(), &[], 0.1, 25.0), "twice"),
+            (polygon(&outer, &[square(0.0, 0.0, 0.5)], 0.1, 25.0), "touches"),
+            (polygon(&outer, &[square(0.2, 0.2, 0.2), square(0.4, 0.4, 0.2)], 0.1, 25.0), "touches"),
             (polygon(&outer, &[square(0.0, 0.25, 0.5)], 0.1, 25.0), "hole"),
             (polygon(&[[1e6 + 1.0, 1e6], [1e6, 1e6], [1e6, 1e6 + 1e-9]], &[], 1.0, 0.0), "rounding"),
         ];

@@ -62,6 +62,8 @@ pub struct Summary {
     pub energy_norm: Option<f64>,
     /// The relative residuals; absent when there was nothing to measure.
     pub residuals: Option<ResidualSummary>,
+    /// The largest of them beyond the rounding of the terms that cancel there: what is held against the tolerance.
+    pub residual_beyond_rounding: Option<f64>,
     /// Where the time went.
     pub seconds: Seconds,
 }
@@ -152,6 +154,7 @@ impl Summary {
             error_parts: bound.map(|bound| bound.parts),
             energy_norm: bound.map(|bound| bound.energy_norm),
             residuals: residuals.map(ResidualSummary::from),
+            residual_beyond_rounding: residuals.map(Residuals::beyond_rounding),
             seconds,
         }
     }

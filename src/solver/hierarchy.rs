@@ -17,10 +17,12 @@ pub(super) use galerkin::RowSum;
 pub(super) use matrix::{Pattern, Values};
 pub(super) use transfer::Transfer;
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
 use crate::discretization::Discretization;
-use crate::mesh::VertexKind;
+use crate::mesh::{Parents, VertexKind};
 use coarsening::coarsened;
 use galerkin::galerkin;
 use matrix::{BLOCK, compact_stiffness, reordered};
@@ -57,14 +59,24 @@ pub(super) struct Level {
 impl Hierarchy {
     /// Makes the levels of a discretization.
     pub(super) fn new(d: &Discretization) -> Self {
-        let mut orders = orders(d);
+        Self::over(d, d.mesh().ancestry())
+    }
+
+    /// Likewise, but all levels are algebraic: on stretched triangles coarser meshes are no good, because they are coarser also
+    /// along the long sides, where neighbours are hardly coupled.
+    pub(super) fn algebraic(d: &Discretization) -> Self {
+        Self::over(d, &[])
+    }
+
+    fn over(d: &Discretization, ancestry: &[Arc<Parents>]) -> Self {
+        let mut orders = orders(d, ancestry);
         let finest_order = orders.as_mut().and_then(Vec::pop);
         let (coloring, vertex) = finest_coloring(d, finest_order.as_deref());
         let (pattern, values) = compact_stiffness(d, &vertex);
         let finest = Level { pattern, values, coloring, transfer: Transfer::default() };
         let mut order = vertex.clone();
         let mut finest_first = vec![finest];
-        for parents in d.mesh().ancestry().iter().rev() {
+        for parents in ancestry.iter().rev() {
             let coarse_order = orders.as_mut().and_then(Vec::pop);
             let position = coarse_order.as_deref().map(inverse);
             let of_row = |&a: &u32| parents.ends()[a as usize];
@@ -219,7 +231,7 @@ impl Level {
 
 /// The vertices of the meshes of the ancestry and of the mesh itself in banded orders; `None` when that of the mesh is
 /// banded as it is, as those of structured meshes are.
-fn orders(d: &Discretization) -> Option<Vec<Vec<u32>>> {
+fn orders(d: &Discretization, ancestry: &[Arc<Parents>]) -> Option<Vec<Vec<u32>>> {
     let k = d.stiffness();
     let reach = |a: usize| {
         let row = k.outer_view(a).expect("a vertex has a row");
@@ -230,7 +242,6 @@ fn orders(d: &Discretization) -> Option<Vec<Vec<u32>>> {
     if is_banded(k.rows(), bandwidth) {
         return None;
     }
-    let ancestry = d.mesh().ancestry();
     // The edges of the coarsest mesh have the first midpoints; without an ancestry they are the entries of the matrix.
     let (vertices, edges): (usize, Vec<[u32; 2]>) = match ancestry.first() {
         Some(parents) => {

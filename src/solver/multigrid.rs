@@ -26,7 +26,8 @@ const SHARE: f64 = 0.5;
 /// The contact problem decoupled; both halves by multigrid, one on each of two threads.
 ///
 /// Truncated nonsmooth Newton multigrid for the gap, plain multigrid for the sum, on the refinements that made the mesh and
-/// on algebraic levels below them; nested iteration from the coarsest level. The cost of a cycle is linear, and the number
+/// on algebraic levels below them; on algebraic levels alone where it stalls on those, as on stretched triangles; nested
+/// iteration from the coarsest level. The cost of a cycle is linear, and the number
 /// of cycles does not depend on the size of the mesh. The energy falls in every cycle. It ends when the contact set stays and
 /// the residuals are within the tolerance. Results do not depend on the number of threads.
 #[derive(Debug, Clone, Copy, Default)]
@@ -40,7 +41,25 @@ impl ContactSolver for Multigrid {
     fn solve(&mut self, d: &Discretization, options: &SolverOptions) -> Result<Candidate, SolverError> {
         options.check()?;
         let start = Instant::now();
-        let hierarchy = Hierarchy::new(d);
+        let candidate = self.solve_on(Hierarchy::new, d, options, start)?;
+        let has_stalled = candidate.statistics.status == Status::Stalled;
+        if has_stalled && !d.mesh().ancestry().is_empty() {
+            return self.solve_on(Hierarchy::algebraic, d, options, start);
+        }
+        Ok(candidate)
+    }
+}
+
+impl Multigrid {
+    /// Solves on the levels that are made like this; the time limit counts from `start`.
+    fn solve_on(
+        &self,
+        levels: fn(&Discretization) -> Hierarchy,
+        d: &Discretization,
+        options: &SolverOptions,
+        start: Instant,
+    ) -> Result<Candidate, SolverError> {
+        let hierarchy = levels(d);
         let setup_seconds = start.elapsed().as_secs_f64();
         let decoupled = Decoupled::new(d);
         let [gap, sum] = halves(&hierarchy, &decoupled, d, options);

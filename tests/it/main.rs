@@ -14,6 +14,8 @@ mod bad_input;
 mod bench;
 mod custom_backend;
 mod exact;
+mod hostile_numbers;
+mod invariance;
 mod layers;
 #[cfg(feature = "cli")]
 mod manifest;
@@ -24,6 +26,8 @@ mod program;
 #[cfg(feature = "cli")]
 mod readme;
 mod resume;
+#[cfg(feature = "cli")]
+mod same_bytes;
 mod stability;
 #[cfg(feature = "cli")]
 mod surroundings;

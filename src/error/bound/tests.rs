@@ -3,6 +3,7 @@
 mod identity;
 mod never_below;
 mod parts;
+mod rounding;
 
 use super::ErrorBound;
 use crate::discretization::Discretization;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::problem::{excerpt, nearest};
+use crate::problem::{Number, excerpt, nearest};
 
 /// Why there is no such exact solution.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -30,7 +30,7 @@ pub enum CaseError {
         known: String,
     },
     /// The value is outside the range in which the formulas hold.
-    #[error("`{name} = {value}` is out of range in the case `{case}`; choose {range}")]
+    #[error("`{name} = {}` is out of range in the case `{case}`; choose {range}", Number(*value))]
     OutOfRange {
         /// The case.
         case: &'static str,

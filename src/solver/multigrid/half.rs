@@ -8,6 +8,7 @@
 
 use std::time::Instant;
 
+use super::MAX_CYCLES;
 use super::correction::CoarseLevels;
 use super::sweep::{Bounded, Found, Iterate};
 use crate::qp::Status;
@@ -17,8 +18,8 @@ use crate::solver::hierarchy::Hierarchy;
 /// Cycles on a coarser level: its error is then well below that of its discretisation.
 const COARSE_CYCLES: usize = 2;
 
-/// A method that has not lowered the largest residual to this fraction in [`PATIENCE`] cycles has arrived at rounding.
-const PROGRESS: f64 = 0.5;
+/// Cycles over which the pace is measured: one that would not reach the tolerance in [`MAX_CYCLES`] cycles has arrived at
+/// rounding, or at nothing.
 const PATIENCE: usize = 3;
 
 /// Two energies that differ by less than this fraction may do so by the rounding of their sums.
@@ -93,6 +94,13 @@ pub(super) fn solve(
     Ok(HalfSolution { cycles, ..found })
 }
 
+/// Whether a residual that has fallen from one size to another in [`PATIENCE`] cycles would not be within the tolerance after
+/// [`MAX_CYCLES`] at that pace.
+fn is_hopeless(before: f64, after: f64, tolerance: f64) -> bool {
+    let paces = (MAX_CYCLES / PATIENCE) as i32;
+    !(after * (after / before).powi(paces) <= tolerance)
+}
+
 /// A function on level `l` with its boundary values, on the level above with zero ones.
 fn prolonged(hierarchy: &Hierarchy, l: usize, mut x: Vec<f64>, height: &[f64], lower: f64) -> Vec<f64> {
     let [coarse, fine] = [l, l + 1].map(|l| &hierarchy.levels()[l]);
@@ -150,7 +158,9 @@ impl<'c, 'h> Cycles<'c, 'h> {
             if cycles >= limits.cycles {
                 break Status::IterationLimit;
             }
-            if cycles >= PATIENCE && !(found.violation < PROGRESS * history[cycles - PATIENCE].violation) {
+            if cycles >= PATIENCE
+                && is_hopeless(history[cycles - PATIENCE].violation, found.violation, tolerance)
+            {
                 break Status::Stalled;
             }
             if limits.deadline.is_some_and(|deadline| Instant::now() > deadline) {

@@ -171,6 +171,36 @@ fn a_warm_start_needs_no_cycles_from_its_own_answer() {
     assert!(solve_by(&mut Multigrid, &d, &again).statistics.iterations <= 1);
 }
 
+/// Where triangles are long and thin, coarser meshes are no good; algebraic levels are, and the method goes over to them.
+#[test]
+fn on_stretched_triangles_the_levels_are_algebraic() {
+    let mesh = rectangle([0.0, 0.0], [1.0, 0.01], [64; 2], Pattern::Right).unwrap();
+    let problem = ContactProblem::builder().tension(1.0, 3.0).load(-1.5e5, 1e5).height(0.1).build().unwrap();
+    let d = Discretization::new(&problem, &mesh).unwrap();
+    let status = |levels| {
+        let candidate = Multigrid.solve_on(levels, &d, &options(), Instant::now()).expect("it runs");
+        candidate.statistics.status
+    };
+    assert_eq!(status(Hierarchy::new), Status::Stalled);
+    assert_eq!(status(Hierarchy::algebraic), Status::Solved);
+    let candidate = solve_by(&mut Multigrid, &d, &options());
+    assert!(certify(&d, candidate, TOLERANCE).is_ok());
+}
+
+/// Slow progress is progress, as on 2 x 8 flat crossed cells; none is none.
+#[test]
+fn a_slow_pace_is_kept_and_none_is_given_up() {
+    let mesh = rectangle([0.0, 0.0], [1.55, 0.5], [2, 8], Pattern::Crossed).unwrap();
+    let d = Discretization::new(&problem([1.0, 1.0], 0.0), &mesh).unwrap();
+    let slow = Multigrid.solve_on(Hierarchy::new, &d, &options(), Instant::now()).expect("it runs");
+    assert_eq!(slow.statistics.status, Status::Solved);
+    assert!(slow.statistics.iterations > 2 * CYCLES, "it is slow: {}", slow.statistics.iterations);
+
+    let unreachable = SolverOptions { tolerance: 1e-30, ..options() };
+    let cycles = solve_by(&mut Multigrid, &d, &unreachable).statistics.iterations;
+    assert!(cycles < MAX_CYCLES, "rounding is noticed: {cycles}");
+}
+
 #[test]
 fn results_do_not_depend_on_the_number_of_threads() {
     let problem = problem([1.0, 2.0], 0.05);
