@@ -18,7 +18,7 @@ use crate::solver::{Candidate, ContactSolver, SolverError, SolverOptions};
 
 /// A solver looks at the clock between its steps. What goes on longer than this fraction of the limit
 /// is not waited for.
-const GRACE: f64 = 0.05;
+const GRACE: f64 = 0.02;
 
 /// As large as the stack of a main thread usually is.
 const STACK: usize = 8 << 20;
