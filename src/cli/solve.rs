@@ -74,7 +74,7 @@ pub(super) fn run(arguments: &SolveArguments, watch: &Watch) -> Result<(), Failu
             results.publish()?;
             drop(progress);
             if !arguments.case.quiet {
-                print(&table(&summary, solution.statistics().polish, &folder))?;
+                print(&table(&summary, solution.statistics().polish, &folder, arguments.dual))?;
             }
             Ok(())
         }
@@ -183,7 +183,7 @@ fn write_dual(
 }
 
 /// The summary for the eye.
-fn table(summary: &Summary, polish: Option<PolishReport>, folder: &Path) -> String {
+fn table(summary: &Summary, polish: Option<PolishReport>, folder: &Path, dual: bool) -> String {
     let number = |value: Option<f64>| value.map_or_else(String::new, |value| fixed(value, 8));
     let interior = summary.unknowns / 2;
     let contact = summary.contact_vertices.unwrap_or(0);
@@ -193,6 +193,11 @@ fn table(summary: &Summary, polish: Option<PolishReport>, folder: &Path) -> Stri
             .fold(r.variational_inequality, f64::max)
     });
     let seconds = &summary.seconds;
+    let mut files = vec![SOLUTION, SUMMARY, PICTURE];
+    if dual {
+        files.extend([DUAL, FLUX, MESH_PICTURE]);
+    }
+    let files = files.join(", ");
     let rows = [
         (
             "mesh",
@@ -237,7 +242,7 @@ fn table(summary: &Summary, polish: Option<PolishReport>, folder: &Path) -> Stri
                 seconds.output
             ),
         ),
-        ("files", format!("{}/{{{SOLUTION}, {SUMMARY}, {PICTURE}}}", folder.display())),
+        ("files", format!("{}/{{{files}}}", folder.display())),
     ];
     let rows: Vec<_> = rows.into_iter().filter(|(_, value)| !value.is_empty()).collect();
     format!("{}\n{}", summary.title, fields(&rows))

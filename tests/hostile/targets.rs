@@ -129,7 +129,8 @@ fn problem() -> ContactProblem {
 
 /// A checkpoint, through to the study that goes on from it.
 fn checkpoint(bytes: &[u8]) {
-    let archive = archive(bytes, &["marked_counts", "marked", "u1", "u2", "lambda", "tolerance", "statistics"]);
+    let archive =
+        archive(bytes, &["marked_counts", "marked", "u1", "u2", "lambda", "tolerance", "statistics"]);
     let checkpoint = match read_checkpoint(Cursor::new(archive)) {
         Ok(checkpoint) => checkpoint,
         Err(error) => return refused(error),

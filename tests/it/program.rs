@@ -334,7 +334,8 @@ fn check_shows_every_backend_side_by_side_and_writes_nothing() {
 #[test]
 fn the_dual_mesh_is_written_when_asked_for() {
     let folder = folder_with(CASE);
-    run(folder.path(), "solve plates.toml --out results --dual --quiet").success();
+    let table = run(folder.path(), "solve plates.toml --out results --dual").success();
+    assert!(table.contains("membranes.png, dual.vtu, flux.vtu, mesh.png}"), "{table}");
     let mut expected = RESULTS.to_vec();
     expected.extend(["dual.vtu", "flux.vtu", "mesh.png"]);
     expected.sort_unstable();
