@@ -51,36 +51,15 @@ pub(super) fn run(arguments: &ConvergeArguments, watch: &Watch) -> Result<(), Fa
     let solver = solver(backend);
     let mut study = ConvergenceStudy::new(exact, setup.family, solver, options(settings), settings.tolerance)
         .map_err(|error| failure(&setup.name, &error))?;
-    let known = levels.len();
-    let mut stop = None;
     clock.watch(watch, &setup.name);
-    if known < arguments.levels {
-        progress.steps(arguments.levels);
-        for level in 0..arguments.levels {
-            progress.stage(format!("level {} of {}", level + 1, arguments.levels));
-            stop = why_stop(&clock, setup.memory, backend, levels.get(..level).and_then(<[_]>::last));
-            if stop.is_some() {
-                break;
-            }
-            study.set_time_limit(clock.of_solver(settings.time_limit));
-            let next =
-                if level < known { study.skip_level().map(|()| None) } else { study.next_level().map(Some) };
-            match next {
-                Ok(None) => {}
-                Ok(Some(level)) => {
-                    levels.push(level);
-                    kept.write(&levels)?;
-                    write_file(&folder.join(TABLE), |out| out.write_all(markdown(&levels).as_bytes()))?;
-                }
-                Err(error) if clock.has_stopped(&error) => {
-                    stop = Some(TIME);
-                    break;
-                }
-                Err(error) => return Err(failure(&setup.name, &error)),
-            }
-            progress.step();
-        }
-    }
+    let limits = Limits {
+        levels: arguments.levels,
+        clock,
+        memory: setup.memory,
+        backend,
+        time_limit: settings.time_limit,
+    };
+    let stop = add_levels(&setup.name, &mut study, &mut levels, &limits, &kept, &progress)?;
     watch.lift();
     write_picture(&folder, &setup.case.title, &levels)?;
     drop(progress);
@@ -96,21 +75,65 @@ pub(super) fn run(arguments: &ConvergeArguments, watch: &Watch) -> Result<(), Fa
     })
 }
 
-/// Why not to begin the level after `last`, judging from that one.
-fn why_stop(
-    clock: &Clock,
+/// What the run may take.
+struct Limits {
+    levels: usize,
+    clock: Clock,
     memory: Memory,
     backend: BackendName,
-    last: Option<&LevelErrors>,
-) -> Option<&'static str> {
-    let last = last?;
-    if !clock.allows(GROWTH * (last.solve_seconds + last.norm_seconds)) {
-        Some(TIME)
-    } else if !memory.suffices(backend, GROWTH * last.vertices as f64) {
-        Some(MEMORY)
-    } else {
-        None
+    /// Seconds of each solve.
+    time_limit: Option<f64>,
+}
+
+impl Limits {
+    /// Why not to begin the level after `last`, judging from that one.
+    fn stop(&self, last: &LevelErrors) -> Option<&'static str> {
+        if !self.clock.allows(GROWTH * (last.solve_seconds + last.norm_seconds)) {
+            Some(TIME)
+        } else if !self.memory.suffices(self.backend, GROWTH * last.vertices as f64) {
+            Some(MEMORY)
+        } else {
+            None
+        }
     }
+}
+
+/// Adds levels to the known ones until there are as many as asked for, or says why there are fewer.
+fn add_levels(
+    name: &str,
+    study: &mut ConvergenceStudy,
+    levels: &mut Vec<LevelErrors>,
+    limits: &Limits,
+    kept: &Levels,
+    progress: &Progress,
+) -> Result<Option<&'static str>, Failure> {
+    let known = levels.len();
+    if known == limits.levels {
+        return Ok(None);
+    }
+    progress.steps(limits.levels);
+    for level in 0..limits.levels {
+        progress.stage(format!("level {} of {}", level + 1, limits.levels));
+        if let Some(why) = level.checked_sub(1).and_then(|last| limits.stop(&levels[last])) {
+            return Ok(Some(why));
+        }
+        study.set_time_limit(limits.clock.of_solver(limits.time_limit));
+        let solved = if level < known {
+            study.skip_level()
+        } else {
+            study.next_level().map(|errors| levels.push(errors))
+        };
+        match solved {
+            Err(error) if limits.clock.has_stopped(&error) => return Ok(Some(TIME)),
+            solved => solved.map_err(|error| failure(name, &error))?,
+        }
+        if level >= known {
+            kept.write(levels)?;
+            write_file(&kept.folder.join(TABLE), |out| out.write_all(markdown(levels).as_bytes()))?;
+        }
+        progress.step();
+    }
+    Ok(None)
 }
 
 /// The errors against the mesh size.
