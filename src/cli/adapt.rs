@@ -67,8 +67,8 @@ pub(super) fn run(arguments: &AdaptArguments, watch: &Watch) -> Result<(), Failu
     let origin = origin(&arguments.case, setup.case.solver.backend, &setup.text);
     let mut levels: Vec<AdaptiveLevel> = kept.so_far(&origin)?;
     progress.stage("going on from the last level");
-    let (mut study, resumed) = resumed(&setup, &folder, levels.len())?;
-    levels.truncate(resumed);
+    let (mut study, known) = resumed(&setup, &folder, levels.len())?;
+    levels.truncate(known);
 
     let limits = Limits::new(arguments, clock, &setup);
     clock.watch(watch, &setup.name);
@@ -95,7 +95,7 @@ pub(super) fn run(arguments: &AdaptArguments, watch: &Watch) -> Result<(), Failu
     watch.lift();
     progress.stage("writing the results");
     if study.solution().is_none() {
-        (study, _) = self::resumed(&setup, &folder, levels.len())?;
+        (study, _) = resumed(&setup, &folder, levels.len())?;
     }
     write_results(&folder, &setup.case, &study, &levels)?;
     drop(progress);

@@ -9,7 +9,7 @@ use super::Failure;
 use super::args::{BenchArguments, CaseArguments, output_folder};
 use super::case_file::BackendName;
 use super::progress::Progress;
-use super::setup::{Setup, check_vertices, make_folder, solver};
+use super::setup::{Setup, check_refinements, make_folder, solver};
 use super::terminal::{grouped, print};
 use super::watch::Watch;
 use crate::discretization::Discretization;
@@ -130,8 +130,7 @@ impl<'a> Bench<'a> {
         let levels = bench.levels;
         let arguments = CaseArguments { path, refine: 0, memory_limit: None, quiet: false };
         let Setup { name, case, mut family, .. } = Setup::new(&arguments, self.progress)?;
-        let finest = family.mesh().points().len() as f64 * 4f64.powf((levels - 1) as f64);
-        check_vertices(&name, levels - 1, finest)?;
+        check_refinements(&name, family.mesh().points().len() as f64, levels - 1)?;
         self.title.clone_from(&case.title);
         self.options.tolerance = bench.tolerance.unwrap_or(case.solver.tolerance.or_default());
         let stem = arguments.path.file_stem().unwrap_or(arguments.path.as_os_str());

@@ -1,6 +1,5 @@
 //! The levels of a study in the folder for results: a run that is stopped goes on from them.
 
-use std::io;
 use std::path::Path;
 
 use serde::Serialize;
@@ -10,6 +9,7 @@ use super::Failure;
 use super::args::CaseArguments;
 use super::case_file::BackendName;
 use super::setup::write_file;
+use crate::output::remove;
 use crate::study::StudyError;
 
 const VERSION: &str = concat!("membranes ", env!("CARGO_PKG_VERSION"));
@@ -55,12 +55,8 @@ impl Levels<'_> {
             return Ok(rows.unwrap_or_default());
         }
         // Levels of another origin go first: a run that is stopped here must not find them under the new one.
-        match std::fs::remove_file(&table) {
-            Err(error) if error.kind() != io::ErrorKind::NotFound => {
-                return Err(Failure::Input(format!("{}: cannot remove: {error}", table.display())));
-            }
-            _ => {}
-        }
+        remove(&table)
+            .map_err(|error| Failure::Input(format!("{}: cannot remove: {error}", table.display())))?;
         write_file(&self.folder.join(self.origin), |out| out.write_all(origin.as_bytes()))?;
         Ok(Vec::new())
     }

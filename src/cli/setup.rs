@@ -61,11 +61,10 @@ fn make_mesh(name: &str, case: &CaseFile, further: usize, memory: Memory) -> Res
     let bad_mesh =
         |error: &dyn std::fmt::Display| Failure::Input(format!("{name}: [mesh], [domain]: {error}"));
     let refinements = case.refine.saturating_add(further);
-    // Each refinement makes four times as many; of all solvers, this one needs the least.
+    // Of all solvers, this one needs the least.
     let check = |vertices: f64| {
-        let vertices = vertices * 4f64.powf(refinements as f64);
-        check_vertices(name, refinements, vertices)?;
-        memory.check(name, BackendName::Multigrid, vertices)
+        let finest = check_refinements(name, vertices, refinements)?;
+        memory.check(name, BackendName::Multigrid, finest)
     };
     let mut family = match &case.mesh {
         MeshSource::File(path) => {
@@ -93,10 +92,12 @@ fn make_mesh(name: &str, case: &CaseFile, further: usize, memory: Memory) -> Res
     Ok(family)
 }
 
-/// Refuses refinements that lead beyond what can be stored.
-pub(super) fn check_vertices(name: &str, refinements: usize, vertices: f64) -> Result<(), Failure> {
-    if vertices <= MAX_VERTICES {
-        return Ok(());
+/// The vertices after so many refinements; refuses such that lead beyond what can be stored.
+pub(super) fn check_refinements(name: &str, vertices: f64, refinements: usize) -> Result<f64, Failure> {
+    // Each refinement makes four times as many.
+    let finest = vertices * 4f64.powf(refinements as f64);
+    if finest <= MAX_VERTICES {
+        return Ok(finest);
     }
     Err(Failure::Input(format!(
         "{name}: {refinements} refinements lead beyond {MAX_VERTICES:.0e} vertices: refine less"

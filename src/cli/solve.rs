@@ -143,16 +143,7 @@ pub(super) fn write_solution(
     bound: &ErrorBound,
 ) -> Result<(), Failure> {
     results.write(SOLUTION, |out| write_vtu(d.mesh(), solution, bound, out))?;
-    let [upper, lower] = solution.displacement();
-    let picture = Picture {
-        title,
-        points: d.mesh().points(),
-        triangles: d.mesh().triangles(),
-        upper,
-        lower,
-        lambda: solution.lambda(),
-        contact: solution.contact(),
-    };
+    let picture = Picture::of(title, d.mesh(), solution);
     let png = render(&picture).map_err(|error| Failure::Input(format!("{PICTURE}: {error}")))?;
     results.write(PICTURE, |out| out.write_all(&png))
 }

@@ -31,8 +31,8 @@ pub fn write_checkpoint(checkpoint: &Checkpoint, out: impl Write + Seek) -> io::
     archive.finish()
 }
 
-/// Reads a checkpoint, into memory of a few times its length. Whether it belongs to a study is for [`AdaptiveStudy::resume`](crate::study::AdaptiveStudy::resume) to
-/// say.
+/// Reads a checkpoint, into memory of a few times its length. Whether it belongs to a study is for
+/// [`AdaptiveStudy::resume`](crate::study::AdaptiveStudy::resume) to say.
 ///
 /// # Errors
 /// When it is no such archive, or an array is missing or broken.

@@ -72,10 +72,9 @@ impl FileSet {
         if let [_, .., (_, seal)] = self.written.as_slice() {
             remove(seal)?;
         }
-        self.written.into_iter().try_for_each(|(file, path)| match file.persist(path) {
-            Ok(_) => Ok(()),
-            Err(error) => Err(error.error),
-        })
+        self.written
+            .into_iter()
+            .try_for_each(|(file, path)| file.persist(path).map(|_| ()).map_err(|error| error.error))
     }
 }
 

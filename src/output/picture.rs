@@ -13,6 +13,8 @@ mod view;
 
 use super::drawing::heading::heading;
 use super::drawing::{axis, canvas, color, frame, outline, raster};
+use crate::action::ContactSolution;
+use crate::mesh::Mesh;
 use canvas::{Canvas, FINE};
 use frame::Frame;
 use map::Map;
@@ -46,6 +48,22 @@ pub struct Picture<'a> {
     pub lambda: &'a [f64],
     /// Whether the membranes touch at the vertex.
     pub contact: &'a [bool],
+}
+
+impl<'a> Picture<'a> {
+    /// That of a solution on its mesh.
+    pub fn of(title: &'a str, mesh: &'a Mesh, solution: &'a ContactSolution) -> Self {
+        let [upper, lower] = solution.displacement();
+        Self {
+            title,
+            points: mesh.points(),
+            triangles: mesh.triangles(),
+            upper,
+            lower,
+            lambda: solution.lambda(),
+            contact: solution.contact(),
+        }
+    }
 }
 
 /// Why no picture could be drawn.

@@ -33,3 +33,5 @@ mod stability;
 mod surroundings;
 #[cfg(feature = "cli")]
 mod theory;
+#[cfg(feature = "cli")]
+mod timeless;

@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use serde_json::Value;
 use tempfile::tempdir;
 
 use super::program::{Run, command, files};
+use super::timeless::timeless;
 
 /// Files by name, without what they say about time.
 type Files = BTreeMap<String, Vec<u8>>;
@@ -74,30 +74,6 @@ cells = 32
     ],
 };
 
-/// The names of columns and keys that hold times.
-fn is_time(name: &str) -> bool {
-    name.contains("seconds")
-}
-
-/// A table without its columns of times.
-fn without_times_in_csv(bytes: &[u8]) -> Vec<u8> {
-    let mut reader = csv::Reader::from_reader(bytes);
-    let headers = reader.headers().expect("a table has a head").clone();
-    let kept = |row: &csv::StringRecord| {
-        let cells = headers.iter().zip(row).filter(|(name, _)| !is_time(name)).map(|(_, cell)| cell);
-        cells.collect::<Vec<_>>().join(",")
-    };
-    let rows: Vec<String> = reader.records().map(|row| kept(&row.expect("a row"))).collect();
-    (kept(&headers) + "\n" + &rows.join("\n")).into_bytes()
-}
-
-/// A summary without its times.
-fn without_times_in_json(bytes: &[u8]) -> Vec<u8> {
-    let mut summary: Value = serde_json::from_slice(bytes).expect("JSON");
-    summary.as_object_mut().expect("a summary has fields").retain(|name, _| !is_time(name));
-    summary.to_string().into_bytes()
-}
-
 /// All files that the work leaves with this number of threads.
 fn results(work: &Work, case: &str, threads: usize) -> Files {
     let folder = tempdir().expect("a temporary folder");
@@ -117,11 +93,7 @@ fn results(work: &Work, case: &str, threads: usize) -> Files {
 
 fn read(folder: &Path, name: String) -> (String, Vec<u8>) {
     let bytes = fs::read(folder.join(&name)).expect("it is readable");
-    let bytes = match Path::new(&name).extension().and_then(|extension| extension.to_str()) {
-        Some("csv") => without_times_in_csv(&bytes),
-        Some("json") => without_times_in_json(&bytes),
-        _ => bytes,
-    };
+    let bytes = timeless(&name, bytes);
     (name, bytes)
 }
 

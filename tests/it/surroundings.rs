@@ -12,6 +12,7 @@ use serde_json::Value;
 use tempfile::{TempDir, tempdir};
 
 use super::program::{Run, command, files, run};
+use super::timeless::timeless;
 
 /// A case with a known solution, whose corner needs a fine mesh.
 const CASE: &str = "case = \"l-shape-free\"\n[mesh]\ncells = 4\n";
@@ -85,32 +86,9 @@ fn torn(folder: &Path) -> Vec<String> {
 }
 
 /// The files of a complete run, but for what the clock says.
-fn timeless(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    let without_seconds = |(name, bytes): (String, Vec<u8>)| {
-        let bytes = match name.as_str() {
-            "summary.json" => {
-                let mut summary: Value = serde_json::from_slice(&bytes).expect("JSON");
-                summary["seconds"].take();
-                summary.to_string().into_bytes()
-            }
-            _ if name.ends_with(".csv") => {
-                without_seconds(std::str::from_utf8(&bytes).expect("text")).into_bytes()
-            }
-            _ => bytes,
-        };
-        (name, bytes)
-    };
-    results(folder).into_iter().map(without_seconds).collect()
-}
-
-/// A table without its columns of seconds.
-fn without_seconds(table: &str) -> String {
-    let heads: Vec<&str> = table.lines().next().unwrap_or_default().split(',').collect();
-    let kept = |row: &str| -> String {
-        let cells = row.split(',').zip(&heads).filter(|(_, head)| !head.ends_with("seconds"));
-        cells.map(|(cell, _)| cell).collect::<Vec<_>>().join(",") + "\n"
-    };
-    table.lines().map(kept).collect()
+fn timeless_results(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let without_times = |(name, bytes)| (String::clone(&name), timeless(&name, bytes));
+    results(folder).into_iter().map(without_times).collect()
 }
 
 /// Numbers between 0 and 1, other ones in each run: the seed is printed, and taken from `MEMBRANES_SEED` if that is set.
@@ -133,7 +111,7 @@ fn kill_at_random(rounds: usize) {
     for (arguments, milliseconds) in COMMANDS {
         let undisturbed = folder_with(CASE);
         run(undisturbed.path(), arguments).success();
-        let expected = timeless(undisturbed.path());
+        let expected = timeless_results(undisturbed.path());
         assert!(expected.len() >= 4 && torn(undisturbed.path()).is_empty(), "{arguments}");
         for _ in 0..rounds {
             let folder = folder_with(CASE);
@@ -145,7 +123,7 @@ fn kill_at_random(rounds: usize) {
                 assert_eq!(torn(folder.path()), [""; 0], "{arguments}");
             }
             run(folder.path(), arguments).success();
-            let found = timeless(folder.path());
+            let found = timeless_results(folder.path());
             assert_eq!(found.keys().collect::<Vec<_>>(), expected.keys().collect::<Vec<_>>(), "{arguments}");
             for (name, bytes) in &expected {
                 assert!(&found[name] == bytes, "{arguments}: {name} is another one");
@@ -177,8 +155,9 @@ fn what_is_torn_or_another_one_would_be_seen() {
     }
     let other = folder_with(&CASE.replace("cells = 4", "cells = 5"));
     run(other.path(), COMMANDS[2].0).success();
-    assert!(timeless(folder.path())["solution.vtu"] != timeless(other.path())["solution.vtu"]);
-    assert_eq!(without_seconds("a,solve_seconds,b\n1,2,3\n"), "a,b\n1,3\n");
+    assert!(
+        timeless_results(folder.path())["solution.vtu"] != timeless_results(other.path())["solution.vtu"]
+    );
 }
 
 /// Waits until `condition` holds.

@@ -97,16 +97,7 @@ fn files(d: &Discretization, bounded: &Bounded) -> Result<(), String> {
 pub fn pictures(hostile: &Hostile, d: &Discretization, bounded: &Bounded) -> Result<(), String> {
     let solution = &bounded.solution;
     let failed = |what: &str, error: &dyn std::fmt::Display| format!("{what}: {error}");
-    let [upper, lower] = solution.displacement();
-    let picture = Picture {
-        title: hostile.name,
-        points: d.mesh().points(),
-        triangles: d.mesh().triangles(),
-        upper,
-        lower,
-        lambda: solution.lambda(),
-        contact: solution.contact(),
-    };
+    let picture = Picture::of(hostile.name, d.mesh(), solution);
     render(&picture).map_err(|error| failed("membranes.png", &error))?;
     let sub = SubTriangulation::new(d.mesh()).map_err(|error| failed("S_h", &error))?;
     let dual = DualMesh::new(d.mesh(), &sub);
