@@ -64,7 +64,9 @@ fn available() -> Option<f64> {
     let read = |path: &str| std::fs::read_to_string(path).ok();
     let group = |name: &str| read(&format!("/sys/fs/cgroup/memory.{name}")).and_then(|text| bytes(&text));
     let system = read("/proc/meminfo").and_then(|text| kibibytes(&text, "MemAvailable:"));
-    let of_group = group("max").zip(group("current")).map(|(most, used)| most - used);
+    // What the group has read from files and not used since is given back when it is needed.
+    let cache = read("/sys/fs/cgroup/memory.stat").and_then(|text| number_after(&text, "inactive_file "));
+    let of_group = group("max").zip(group("current")).map(|(most, used)| most - used + cache.unwrap_or(0.0));
     let of_process = read("/proc/self/limits").and_then(|text| address_space(&text));
     [system, of_group, of_process].into_iter().flatten().reduce(f64::min)
 }
@@ -73,6 +75,11 @@ fn available() -> Option<f64> {
 fn kibibytes(meminfo: &str, name: &str) -> Option<f64> {
     let line = meminfo.lines().find_map(|line| line.strip_prefix(name))?;
     Some(1024.0 * bytes(line.trim().strip_suffix("kB")?)?)
+}
+
+/// A line `NAME 24` of the statistics of a control group.
+fn number_after(statistics: &str, name: &str) -> Option<f64> {
+    statistics.lines().find_map(|line| line.strip_prefix(name)).and_then(bytes)
 }
 
 /// A number; `max` is none.
@@ -97,6 +104,9 @@ mod tests {
         assert_eq!(kibibytes("MemTotal: 100 kB\n", "MemAvailable:"), None);
         assert_eq!(kibibytes("MemAvailable: many kB\n", "MemAvailable:"), None);
         assert_eq!((bytes("4096\n"), bytes("max\n")), (Some(4096.0), None));
+        let statistics = "file 9\ninactive_file 7\n";
+        assert_eq!(number_after(statistics, "inactive_file "), Some(7.0));
+        assert_eq!(number_after(statistics, "active_file "), None);
         let limits = "Limit   Soft Limit  Hard Limit  Units\nMax cpu time  unlimited  unlimited  seconds\nMax address space  4194304  unlimited  bytes\n";
         assert_eq!(address_space(limits), Some(4_194_304.0));
         assert_eq!(address_space(&limits.replace("4194304", "unlimited")), None);
