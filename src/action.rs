@@ -5,6 +5,7 @@ mod pairing;
 mod recovery;
 mod residuals;
 mod solution;
+mod sums;
 #[cfg(test)]
 mod tests;
 

@@ -46,6 +46,17 @@ pub struct Scales {
     pub dual_area: f64,
 }
 
+/// The forces on one membrane at a vertex.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Balance {
+    /// `(mu_i K u_i - F_i)_a`. Unit: force.
+    pub(crate) imbalance: f64,
+    /// The size of the terms that cancel in it: `mu_i |K| |u_i| + m |K| |u1 - u2| + |F_i|` with `m = mu1 mu2 / (mu1 + mu2)`.
+    /// Times the machine precision, it bounds what rounding leaves. The second term is there because one membrane follows
+    /// from the other and the gap: where it is nearly flat, the gap's rounding stays in it.
+    pub(crate) terms: f64,
+}
+
 impl<'m> Discretization<'m> {
     /// Assembles the discrete problem. Linear time and memory.
     ///
@@ -135,19 +146,24 @@ impl<'m> Discretization<'m> {
         self.interior.par_iter().with_min_len(BLOCK).map(row).collect()
     }
 
-    /// The size of the terms that cancel in [`imbalance`](Self::imbalance) of membrane `i` at the unknowns:
-    /// `mu_i |K| |u_i| + m |K| |u1 - u2| + |F_i|` with `m = mu1 mu2 / (mu1 + mu2)`. Times the machine precision, it bounds
-    /// what rounding leaves of it. The second term is there because one membrane follows from the other and the gap:
-    /// where it is nearly flat, the gap's rounding stays in it.
-    pub fn imbalance_terms(&self, i: usize, displacement: &[Vec<f64>; 2]) -> Vec<f64> {
-        let [u1, u2] = displacement;
+    /// [`imbalance`](Self::imbalance) of both membranes at the vertex `a`, with the terms that cancel in it.
+    pub(crate) fn balance(&self, a: usize, [u1, u2]: [&[f64]; 2]) -> [Balance; 2] {
         let [mu1, mu2] = self.tension;
         let gap_tension = mu1 * (mu2 / (mu1 + mu2));
-        let size =
-            |b: usize| self.tension[i] * displacement[i][b].abs() + gap_tension * (u1[b] - u2[b]).abs();
-        let terms =
-            |&a: &usize| self.row(a).map(|(&b, k)| k.abs() * size(b)).sum::<f64>() + self.load[i][a].abs();
-        self.interior.par_iter().with_min_len(BLOCK).map(terms).collect()
+        let ([mut ku1, mut ku2], [mut terms_1, mut terms_2]) = ([0.0; 2], [0.0; 2]);
+        for (&b, k) in self.row(a) {
+            let (u1, u2) = (u1[b], u2[b]);
+            let gap = gap_tension * (u1 - u2).abs();
+            ku1 += k * u1;
+            ku2 += k * u2;
+            terms_1 += k.abs() * (mu1 * u1.abs() + gap);
+            terms_2 += k.abs() * (mu2 * u2.abs() + gap);
+        }
+        let [f1, f2] = [0, 1].map(|i| self.load[i][a]);
+        [
+            Balance { imbalance: mu1 * ku1 - f1, terms: terms_1 + f1.abs() },
+            Balance { imbalance: mu2 * ku2 - f2, terms: terms_2 + f2.abs() },
+        ]
     }
 
     /// `(K v)_a`.

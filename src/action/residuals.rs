@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::Action;
+use super::sums::sums;
 use crate::discretization::Discretization;
 use crate::mesh::VertexKind;
 
@@ -48,12 +49,12 @@ impl Residuals {
     /// Recomputes all checks.
     ///
     /// # Panics
-    /// When `displacement` is not over the vertices or `multiplier` not over the unknowns of `d`.
+    /// When `displacement` is not over the vertices, or `multiplier` or `action` not over the unknowns of `d`.
     pub fn new(
         d: &Discretization,
         displacement: &[Vec<f64>; 2],
         multiplier: &[f64],
-        action: &Action,
+        action: &[Action],
     ) -> Self {
         let scales = d.scales();
         let [u1, u2] = displacement;
@@ -61,49 +62,57 @@ impl Residuals {
             displacement.iter().all(|u| u.len() == d.mesh().points().len()),
             "displacements are over vertices"
         );
-        assert_eq!(multiplier.len(), d.interior().len(), "multipliers are over unknowns");
+        assert!(
+            multiplier.len() == d.interior().len() && action.len() == multiplier.len(),
+            "multipliers and actions are over unknowns"
+        );
         let (force, length) = (scales.force_density, scales.displacement);
-        let unknowns = || d.interior().par_iter().with_min_len(BLOCK).copied().enumerate();
-        let density = |k: usize, a: usize| multiplier[k] / d.dual_area()[a];
-        let gap = |a: usize| u1[a] - u2[a];
-        let [lambda_1, lambda_2] = &action.from_membrane;
-        let [rounding_1, rounding_2] = &action.rounding;
-
-        let stationarity = unknowns().flat_map_iter(|(k, a)| {
-            [(lambda_1, rounding_1), (lambda_2, rounding_2)]
-                .map(|(lambda, rounding)| ((lambda[k] - density(k, a)).abs() / force, rounding[k] / force))
-        });
-        let held = (0..u1.len()).into_par_iter().filter(|&a| d.mesh().kind()[a] != VertexKind::Interior);
-        let trace = held.flat_map_iter(|a| [(u1[a] - d.height()[a]).abs(), u2[a].abs()]);
-        let primal = unknowns().map(|(_, a)| -gap(a)).chain(trace).map(|defect| (defect / length, 0.0));
-        let dual_sign = unknowns().flat_map_iter(|(k, a)| {
-            [(density(k, a), 0.0), (lambda_1[k], rounding_1[k]), (lambda_2[k], rounding_2[k])]
-                .map(|(lambda, rounding)| (-lambda / force, rounding / force))
-        });
-        let complementarity = unknowns().map(|(k, a)| {
-            let gap = (gap(a) / length).abs();
-            (action.lambda[k].abs() / force * gap, action.lambda_rounding(d, k) / force * gap)
-        });
-        let action_mismatch = unknowns().map(|(k, _)| {
-            ((lambda_1[k] - lambda_2[k]).abs() / force, (rounding_1[k] + rounding_2[k]) / force)
-        });
         let integrals = hat_integrals(d);
-        let dual_mismatch = unknowns().map(|(k, a)| {
-            let defect = (multiplier[k] - action.lambda[k] * integrals[a]).abs() / integrals[a];
-            (defect / force, action.lambda_rounding(d, k) / force)
-        });
+        let at_unknown = |(k, &a): (usize, &usize)| {
+            let Action { from_membrane: [lambda_1, lambda_2], rounding, lambda, lambda_rounding } = action[k];
+            let density = multiplier[k] / d.dual_area()[a];
+            let gap = u1[a] - u2[a];
+            let of_force = |defect: f64, rounding: f64| Residual::new(defect / force, rounding / force);
+            let relative_gap = (gap / length).abs();
+            Self {
+                stationarity: of_force((lambda_1 - density).abs(), rounding[0])
+                    .larger(of_force((lambda_2 - density).abs(), rounding[1])),
+                primal: Residual::new(-gap / length, 0.0),
+                dual_sign: of_force(-density, 0.0)
+                    .larger(of_force(-lambda_1, rounding[0]))
+                    .larger(of_force(-lambda_2, rounding[1])),
+                complementarity: of_force(lambda.abs() * relative_gap, lambda_rounding * relative_gap),
+                action_mismatch: of_force((lambda_1 - lambda_2).abs(), rounding[0] + rounding[1]),
+                dual_mismatch: of_force(
+                    (multiplier[k] - lambda * integrals[a]).abs() / integrals[a],
+                    lambda_rounding,
+                ),
+                variational_inequality: Residual::default(),
+                overlap: Residual::new((lambda / force).min(gap / length), 0.0).value,
+            }
+        };
+        let at_held = |a: usize| {
+            let of_length = |defect: f64| Residual::new(defect.abs() / length, 0.0);
+            Self { primal: of_length(u1[a] - d.height()[a]).larger(of_length(u2[a])), ..Self::default() }
+        };
+        let unknowns = d.interior().par_iter().enumerate().with_min_len(BLOCK);
+        let held = (0..u1.len()).into_par_iter().filter(|&a| d.mesh().kind()[a] != VertexKind::Interior);
+        let largest = unknowns.map(at_unknown).chain(held.map(at_held)).reduce(Self::default, Self::larger);
+        let variational_inequality = variational_inequality(d, action, |a| u1[a] - u2[a]);
+        Self { variational_inequality, ..largest }
+    }
+
+    /// The larger one of each check.
+    fn larger(self, other: Self) -> Self {
         Self {
-            stationarity: Residual::largest(stationarity),
-            primal: Residual::largest(primal),
-            dual_sign: Residual::largest(dual_sign),
-            complementarity: Residual::largest(complementarity),
-            action_mismatch: Residual::largest(action_mismatch),
-            dual_mismatch: Residual::largest(dual_mismatch),
-            variational_inequality: variational_inequality(d, action, gap),
-            overlap: Residual::largest(
-                unknowns().map(|(k, a)| ((action.lambda[k] / force).min(gap(a) / length), 0.0)),
-            )
-            .value,
+            stationarity: self.stationarity.larger(other.stationarity),
+            primal: self.primal.larger(other.primal),
+            dual_sign: self.dual_sign.larger(other.dual_sign),
+            complementarity: self.complementarity.larger(other.complementarity),
+            action_mismatch: self.action_mismatch.larger(other.action_mismatch),
+            dual_mismatch: self.dual_mismatch.larger(other.dual_mismatch),
+            variational_inequality: self.variational_inequality.larger(other.variational_inequality),
+            overlap: self.overlap.max(other.overlap),
         }
     }
 
@@ -127,44 +136,47 @@ impl Residuals {
 }
 
 impl Residual {
-    /// The largest of `(defect, rounding allowed there)`.
-    fn largest(defects: impl ParallelIterator<Item = (f64, f64)>) -> Self {
+    /// A defect, and the rounding that is allowed in it.
+    fn new(defect: f64, rounding: f64) -> Self {
         let or_infinite = |x: f64| if x.is_nan() { f64::INFINITY } else { x };
-        let larger = |a: Self, b: Self| Self {
-            value: a.value.max(b.value),
-            beyond_rounding: a.beyond_rounding.max(b.beyond_rounding),
-        };
-        let of_one = |(defect, rounding)| Self {
-            value: or_infinite(defect),
-            beyond_rounding: or_infinite(defect - rounding),
-        };
-        defects.map(of_one).reduce(Self::default, larger)
+        Self { value: or_infinite(defect), beyond_rounding: or_infinite(defect - rounding) }
+    }
+
+    fn larger(self, other: Self) -> Self {
+        Self {
+            value: self.value.max(other.value),
+            beyond_rounding: self.beyond_rounding.max(other.beyond_rounding),
+        }
     }
 }
 
 /// `<lambda_h, u1 - u2>_h` by (4.3), (4.4), relative to the work of the scale force over the scale displacement.
-fn variational_inequality(d: &Discretization, action: &Action, gap: impl Fn(usize) -> f64) -> Residual {
-    let scales = d.scales();
-    let (mut work, mut rounding, mut area) = (0.0, 0.0, 0.0);
-    for (k, &a) in d.interior().iter().enumerate() {
-        let weight = d.dual_area()[a] * gap(a);
-        work += action.lambda[k] * weight;
-        rounding += action.lambda_rounding(d, k) * weight.abs();
-        area += d.dual_area()[a];
-    }
+fn variational_inequality(
+    d: &Discretization,
+    action: &[Action],
+    gap: impl Fn(usize) -> f64 + Sync,
+) -> Residual {
     if d.interior().is_empty() {
         return Residual::default();
     }
+    let scales = d.scales();
+    let terms = |k: usize| {
+        let a = d.interior()[k];
+        let area = d.dual_area()[a];
+        [action[k].lambda * area * gap(a), action[k].lambda_rounding * (area * gap(a)).abs(), area]
+    };
+    let [work, rounding, area] = sums(d.interior().len(), terms);
     let unit = scales.force_density * scales.displacement * area;
-    Residual::largest(rayon::iter::once((work.abs() / unit, rounding / unit)))
+    Residual::new(work.abs() / unit, rounding / unit).larger(Residual::default())
 }
 
 /// `int phi_a` over vertices, triangle by triangle: what `|D_a|` must be by (4.17).
 fn hat_integrals(d: &Discretization) -> Vec<f64> {
     let mut integrals = vec![0.0; d.mesh().points().len()];
     for (t, corners) in d.mesh().triangles().iter().enumerate() {
+        let third = d.mesh().triangle_area(t) / 3.0;
         for &a in corners {
-            integrals[a] += d.mesh().triangle_area(t) / 3.0;
+            integrals[a] += third;
         }
     }
     integrals

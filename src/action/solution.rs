@@ -2,11 +2,13 @@
 
 use rayon::prelude::*;
 
+use super::sums::sums;
 use super::{Action, Residuals};
 use crate::discretization::Discretization;
+use crate::mesh::VertexKind;
 use crate::solver::Statistics;
 
-/// Terms that are added up together.
+/// Vertices that are worked on together.
 const BLOCK: usize = 4096;
 
 /// Membranes closer than this fraction of the displacements' scale touch: the rounding of the displacements.
@@ -31,19 +33,21 @@ impl ContactSolution {
     pub(super) fn new(
         d: &Discretization,
         displacement: [Vec<f64>; 2],
-        action: &Action,
+        action: &[Action],
         residuals: Residuals,
         statistics: Statistics,
     ) -> Self {
         let lambda = nonzero_beyond_rounding(d, action);
         let contact = contact_set(d, &displacement, &lambda);
-        let sum_cells = |value: &(dyn Fn(usize) -> f64 + Sync)| {
-            sum(d.interior().len(), |k| d.dual_area()[d.interior()[k]] * value(d.interior()[k]))
+        let over_cells = |k: usize| {
+            let a = d.interior()[k];
+            [f64::from(contact[a]), lambda[a]].map(|value| d.dual_area()[a] * value)
         };
+        let [contact_area, total_force] = sums(d.interior().len(), over_cells);
         Self {
             energy: energy(d, &displacement),
-            contact_area: sum_cells(&|a| f64::from(contact[a])),
-            total_force: sum_cells(&|a| lambda[a]),
+            contact_area,
+            total_force,
             displacement,
             lambda,
             contact,
@@ -100,41 +104,30 @@ impl ContactSolution {
     }
 }
 
-fn nonzero_beyond_rounding(d: &Discretization, action: &Action) -> Vec<f64> {
-    let cleaned = |k: usize| {
-        let lambda = action.lambda[k];
-        if lambda.abs() <= action.lambda_rounding(d, k) { 0.0 } else { lambda }
+fn nonzero_beyond_rounding(d: &Discretization, action: &[Action]) -> Vec<f64> {
+    let cleaned = |action: &Action| {
+        if action.lambda.abs() <= action.lambda_rounding { 0.0 } else { action.lambda }
     };
-    let over_unknowns = (0..d.interior().len()).into_par_iter().with_min_len(BLOCK).map(cleaned);
-    d.extend(&over_unknowns.collect::<Vec<_>>(), |_| 0.0)
+    d.extend(&action.iter().map(cleaned).collect::<Vec<_>>(), |_| 0.0)
 }
 
 /// A vertex is in contact when the gap is zero to rounding or, relative to the data, smaller than the action: for an
 /// answer that is not polished, both may be positive.
 fn contact_set(d: &Discretization, [u1, u2]: &[Vec<f64>; 2], lambda: &[f64]) -> Vec<bool> {
     let scales = d.scales();
-    let mut contact = vec![false; lambda.len()];
-    for &a in d.interior() {
+    let touches = |a: usize| {
         let gap = (u1[a] - u2[a]) / scales.displacement;
-        contact[a] = gap <= TOUCHING || gap < lambda[a] / scales.force_density;
-    }
-    contact
+        d.mesh().kind()[a] == VertexKind::Interior
+            && (gap <= TOUCHING || gap < lambda[a] / scales.force_density)
+    };
+    (0..lambda.len()).into_par_iter().with_min_len(BLOCK).map(touches).collect()
 }
 
-fn energy(d: &Discretization, displacement: &[Vec<f64>; 2]) -> f64 {
-    (0..2)
-        .map(|i| {
-            let u = &displacement[i];
-            let at = |a: usize| (0.5 * d.tension()[i] * d.stiffness_row(a, |b| u[b]) - d.load()[i][a]) * u[a];
-            sum(u.len(), at)
-        })
-        .sum()
-}
-
-/// `term(0) + ... + term(count - 1)`, in parallel, in an order that does not depend on the number of threads.
-fn sum(count: usize, term: impl Fn(usize) -> f64 + Sync) -> f64 {
-    let of_block = |block: usize| (block * BLOCK..((block + 1) * BLOCK).min(count)).map(&term).sum::<f64>();
-    let blocks: Vec<f64> = (0..count.div_ceil(BLOCK)).into_par_iter().map(of_block).collect();
-    // From zero: `sum` makes a negative zero of nothing.
-    blocks.into_iter().fold(0.0, |sum, block| sum + block)
+fn energy(d: &Discretization, [u1, u2]: &[Vec<f64>; 2]) -> f64 {
+    let of = |i: usize, u: &[f64], a: usize| {
+        (0.5 * d.tension()[i] * d.stiffness_row(a, |b| u[b]) - d.load()[i][a]) * u[a]
+    };
+    let at = |a: usize| [of(0, u1, a) + of(1, u2, a)];
+    let [energy] = sums(u1.len(), at);
+    energy
 }

@@ -90,11 +90,11 @@ fn imbalance_of_an_exact_solution_is_rounding() {
     let mesh = square(8);
     let d = Discretization::new(&problem(-4.0, -1.0, 0.0), &mesh).unwrap();
     let u: Vec<f64> = mesh.points().iter().map(|&[x, _]| x * x).collect();
-    let both = [u.clone(), u.clone()];
     for membrane in 0..2 {
-        let (imbalance, terms) = (d.imbalance(membrane, &u), d.imbalance_terms(membrane, &both));
-        for (k, (imbalance, terms)) in imbalance.iter().zip(&terms).enumerate() {
-            assert!(imbalance.abs() <= 8.0 * f64::EPSILON * terms, "unknown {k}: {imbalance}, of {terms}");
+        for (&a, &whole) in d.interior().iter().zip(&d.imbalance(membrane, &u)) {
+            let Balance { imbalance, terms } = d.balance(a, [&u, &u])[membrane];
+            assert!(imbalance.abs() <= 8.0 * f64::EPSILON * terms, "vertex {a}: {imbalance}, of {terms}");
+            assert!((imbalance - whole).abs() <= 8.0 * f64::EPSILON * terms);
         }
         let doubled: Vec<f64> = u.iter().map(|u| 2.0 * u).collect();
         // mu K (2 u) - F = F = -2 mu |D_a|
@@ -104,16 +104,16 @@ fn imbalance_of_an_exact_solution_is_rounding() {
 }
 
 #[test]
-fn imbalance_terms_are_sums_of_sizes() {
+fn the_terms_of_a_balance_are_sums_of_sizes() {
     let mesh = square(2);
     let d = Discretization::new(&problem(-4.0, 1.0, 0.0), &mesh).unwrap();
     // At the centre K has 4 and four times -1: 2 (4 * 3 + 4 * 5) + 4 / 4.
     let u = vec![-5.0, -5.0, -5.0, -5.0, 3.0, 5.0, 5.0, 5.0, 5.0];
-    let terms = |lower: Vec<f64>| d.imbalance_terms(0, &[u.clone(), lower])[0];
-    assert!((terms(u.clone()) - 65.0).abs() < ROUNDING);
+    let terms = |lower: &[f64]| d.balance(d.interior()[0], [&u, lower])[0].terms;
+    assert!((terms(&u) - 65.0).abs() < ROUNDING);
     // A gap as large as u adds m (4 * 3 + 4 * 5).
     let [mu1, mu2] = d.tension();
-    assert!((terms(vec![0.0; 9]) - 65.0 - mu1 * mu2 / (mu1 + mu2) * 32.0).abs() < ROUNDING);
+    assert!((terms(&[0.0; 9]) - 65.0 - mu1 * mu2 / (mu1 + mu2) * 32.0).abs() < ROUNDING);
     assert!((d.imbalance(0, &u)[0] - (2.0 * 12.0 + 1.0)).abs() < ROUNDING);
 }
 

@@ -166,12 +166,13 @@ impl Push {
         let mut rest_sq = [0.0; 2];
         for (k, &a) in d.interior().iter().enumerate() {
             // Where there is a gap, an action would cost its product with the gap; rounding of a large gap is none.
-            let is_action = action.lambda[k] > action.lambda_rounding(d, k);
-            if is_action && gap(a) / scales.displacement < action.lambda[k] / scales.force_density {
-                lambda[a] = action.lambda[k].max(0.0);
+            let Action { lambda: recovered, lambda_rounding, from_membrane, .. } = action[k];
+            let is_action = recovered > lambda_rounding;
+            if is_action && gap(a) / scales.displacement < recovered / scales.force_density {
+                lambda[a] = recovered.max(0.0);
             }
             (0..2).for_each(|i| {
-                rest_sq[i] += d.dual_area()[a] * (action.from_membrane[i][k] - lambda[a]).powi(2);
+                rest_sq[i] += d.dual_area()[a] * (from_membrane[i] - lambda[a]).powi(2);
             });
         }
         push_at_boundary(d, gap, around, &mut lambda);
