@@ -81,7 +81,8 @@ impl Hierarchy {
             let position = coarse_order.as_deref().map(inverse);
             let of_row = |&a: &u32| parents.ends()[a as usize];
             let in_order = |a: u32| position.as_ref().map_or(a, |position| position[a as usize]);
-            let ends = order.iter().map(of_row).map(|ends| ends.map(in_order));
+            let ends =
+                order.par_iter().with_min_len(BLOCK).map(of_row).map(|ends| ends.map(in_order)).collect();
             let transfer = Transfer::from_midpoints(parents.coarse_vertices(), ends);
             let Some(rows) = descend(&mut finest_first, transfer) else { break };
             order = composed(coarse_order.as_deref(), rows);

@@ -36,7 +36,12 @@ pub(super) fn guess_from_coarser_levels(
         }
         let finer = &hierarchy.levels()[l + 1].transfer;
         let finer_rows = hierarchy.levels()[l + 1].pattern.rows();
-        touches = (0..finer_rows).map(|i| finer.parents(i).all(|(a, _)| on_level[a])).collect();
+        let all_touch = |i: usize| {
+            let mut all = true;
+            finer.for_each_parent(i, |a, _| all &= on_level[a]);
+            all
+        };
+        touches = (0..finer_rows).map(all_touch).collect();
     }
     let mut over_vertices = vec![false; hierarchy.vertex().len()];
     for (&a, &touches) in hierarchy.vertex().iter().zip(&touches) {

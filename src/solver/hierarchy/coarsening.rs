@@ -45,7 +45,7 @@ pub(super) fn coarsened(pattern: &Pattern, values: &Values) -> Transfer {
         }
         start.push(index.len() as u32);
     }
-    Transfer::new(same_vertex, start, index, weight)
+    Transfer::weighted(same_vertex, start, index, weight)
 }
 
 /// `-a_ij` of the strong couplings of row `i`.

@@ -59,16 +59,14 @@ impl RowSum {
             if frozen(i) || values.diagonal[i] == 0.0 {
                 continue;
             }
-            for (b, other) in transfer.parents(i) {
-                self.add(b, weight * values.diagonal[i] * other);
-            }
+            let value = weight * values.diagonal[i];
+            transfer.for_each_parent(i, |b, other| self.add(b, value * other));
             for (&j, value) in pattern.row(i).iter().zip(&values.off_diagonal[pattern.range(i)]) {
                 if frozen(j as usize) {
                     continue;
                 }
-                for (b, other) in transfer.parents(j as usize) {
-                    self.add(b, weight * value * other);
-                }
+                let value = weight * value;
+                transfer.for_each_parent(j as usize, |b, other| self.add(b, value * other));
             }
         }
     }

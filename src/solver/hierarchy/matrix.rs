@@ -152,7 +152,8 @@ pub(super) fn compact_stiffness(d: &Discretization, order: &[u32]) -> (Pattern, 
                 for (b, &value) in row.iter() {
                     if b == a {
                         diagonal = value;
-                    } else {
+                    } else if value != 0.0 {
+                        // Opposite a right angle it is zero.
                         rows.column.push(position[b]);
                         rows.off_diagonal.push(value);
                     }

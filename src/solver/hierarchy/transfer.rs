@@ -1,5 +1,7 @@
 //! Prolongation and restriction between two neighbouring levels.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 /// Rows that are gathered together.
@@ -8,96 +10,177 @@ const BLOCK: usize = 4096;
 /// The prolongation `P` from a coarser level, by rows, and its transpose.
 #[derive(Debug, Clone, Default)]
 pub(in crate::solver) struct Transfer {
-    parents: Weights,
-    children: Weights,
+    parents: Parents,
+    children: Rows,
+    /// The rows of the finer level that are the coarse vertices themselves.
     same_vertex: Vec<u32>,
 }
 
-/// Compressed rows of weights.
+/// The rows of the prolongation.
+#[derive(Debug, Clone)]
+enum Parents {
+    /// The mean of two coarse vertices, of which the row is the midpoint; or one, named twice.
+    Edges(Vec<[u32; 2]>),
+    Weighted(Rows),
+}
+
+/// Compressed rows. Those of midpoints have no weights: it is one for the vertex itself, one half for others.
 #[derive(Debug, Clone, Default)]
-struct Weights {
+struct Rows {
     start: Vec<u32>,
     index: Vec<u32>,
     weight: Vec<f64>,
 }
 
-impl Weights {
+impl Default for Parents {
+    fn default() -> Self {
+        Self::Edges(Vec::new())
+    }
+}
+
+impl Parents {
+    fn rows(&self) -> usize {
+        match self {
+            Self::Edges(ends) => ends.len(),
+            Self::Weighted(rows) => rows.start.len() - 1,
+        }
+    }
+
+    /// `(A, P_iA)` for the row `i`.
     #[inline(always)]
-    fn row(&self, i: usize) -> impl Iterator<Item = (usize, f64)> + Clone {
+    fn for_each(&self, i: usize, mut take: impl FnMut(usize, f64)) {
+        match self {
+            Self::Edges(ends) => {
+                let [a, b] = ends[i].map(|a| a as usize);
+                if a == b {
+                    take(a, 1.0);
+                } else {
+                    take(a, 0.5);
+                    take(b, 0.5);
+                }
+            }
+            Self::Weighted(rows) => rows.weighted(i).for_each(|(a, weight)| take(a, weight)),
+        }
+    }
+
+    /// Where the children of each coarse vertex are, with their weights unless those are known.
+    fn transposed(&self, columns: usize) -> Rows {
+        let mut start = vec![0u32; columns + 1];
+        (0..self.rows()).for_each(|i| self.for_each(i, |a, _| start[a + 1] += 1));
+        for a in 0..columns {
+            start[a + 1] += start[a];
+        }
+        let mut next = start.clone();
+        let entries = start[columns] as usize;
+        let mut index = vec![0; entries];
+        let mut weight = if matches!(self, Self::Edges(_)) { Vec::new() } else { vec![0.0; entries] };
+        for i in 0..self.rows() {
+            self.for_each(i, |a, value| {
+                let at = next[a] as usize;
+                index[at] = i as u32;
+                if !weight.is_empty() {
+                    weight[at] = value;
+                }
+                next[a] += 1;
+            });
+        }
+        Rows { start, index, weight }
+    }
+}
+
+impl Rows {
+    #[inline(always)]
+    fn range(&self, i: usize) -> Range<usize> {
+        self.start[i] as usize..self.start[i + 1] as usize
+    }
+
+    #[inline(always)]
+    fn weighted(&self, i: usize) -> impl Iterator<Item = (usize, f64)> {
         let range = self.range(i);
         self.index[range.clone()].iter().zip(&self.weight[range]).map(|(&j, &weight)| (j as usize, weight))
     }
 
-    #[inline(always)]
-    fn range(&self, i: usize) -> std::ops::Range<usize> {
-        self.start[i] as usize..self.start[i + 1] as usize
-    }
-
-    fn rows(&self) -> usize {
-        self.start.len() - 1
+    /// The same in another order.
+    fn reordered(&self, order: &[u32]) -> Self {
+        let mut rows = Self {
+            start: Vec::with_capacity(order.len() + 1),
+            index: Vec::with_capacity(self.index.len()),
+            weight: Vec::with_capacity(self.weight.len()),
+        };
+        rows.start.push(0);
+        for &a in order {
+            let range = self.range(a as usize);
+            rows.index.extend_from_slice(&self.index[range.clone()]);
+            if !self.weight.is_empty() {
+                rows.weight.extend_from_slice(&self.weight[range]);
+            }
+            rows.start.push(rows.index.len() as u32);
+        }
+        rows
     }
 }
 
 impl Transfer {
+    fn new(same_vertex: Vec<u32>, parents: Parents) -> Self {
+        Self { children: parents.transposed(same_vertex.len()), parents, same_vertex }
+    }
+
     /// From the rows of the prolongation: where each ends, and their entries. `same_vertex` are the rows of the finer level
     /// that are the coarse vertices themselves.
-    pub(super) fn new(same_vertex: Vec<u32>, start: Vec<u32>, index: Vec<u32>, weight: Vec<f64>) -> Self {
-        let parents = Weights { start, index, weight };
-        let children = transposed(same_vertex.len(), &parents);
-        Self { parents, children, same_vertex }
+    pub(super) fn weighted(
+        same_vertex: Vec<u32>,
+        start: Vec<u32>,
+        index: Vec<u32>,
+        weight: Vec<f64>,
+    ) -> Self {
+        Self::new(same_vertex, Parents::Weighted(Rows { start, index, weight }))
     }
 
     /// Each row takes the mean of its values at two vertices, or at one that is named twice.
-    pub(super) fn from_midpoints(coarse_rows: usize, ends: impl Iterator<Item = [u32; 2]>) -> Self {
-        let (mut start, mut index, mut weight) = (vec![0], Vec::new(), Vec::new());
+    pub(super) fn from_midpoints(coarse_rows: usize, ends: Vec<[u32; 2]>) -> Self {
         let mut same_vertex = vec![0; coarse_rows];
-        for (i, [a, b]) in ends.enumerate() {
+        for (i, &[a, b]) in ends.iter().enumerate() {
             if a == b {
-                index.push(a);
-                weight.push(1.0);
                 same_vertex[a as usize] = i as u32;
-            } else {
-                index.extend([a, b]);
-                weight.extend([0.5, 0.5]);
             }
-            start.push(index.len() as u32);
         }
-        Self::new(same_vertex, start, index, weight)
+        Self::new(same_vertex, Parents::Edges(ends))
     }
 
     /// The level is its own coarser level.
     pub(super) fn identity(rows: usize) -> Self {
-        Self::from_midpoints(rows, (0..rows as u32).map(|a| [a, a]))
+        Self::from_midpoints(rows, (0..rows as u32).map(|a| [a, a]).collect())
     }
 
     /// The same with the coarse vertices in another order: number `order[k]` becomes `k`.
     pub(super) fn with_coarse_order(mut self, order: &[u32], position: &[u32]) -> Self {
-        self.parents.index.par_iter_mut().for_each(|a| *a = position[*a as usize]);
-        self.same_vertex = order.iter().map(|&a| self.same_vertex[a as usize]).collect();
-        let mut children = Weights {
-            start: vec![0],
-            index: Vec::with_capacity(self.children.index.len()),
-            weight: Vec::with_capacity(self.children.weight.len()),
-        };
-        for &a in order {
-            let range = self.children.range(a as usize);
-            children.index.extend_from_slice(&self.children.index[range.clone()]);
-            children.weight.extend_from_slice(&self.children.weight[range]);
-            children.start.push(children.index.len() as u32);
+        let place = |a: &mut u32| *a = position[*a as usize];
+        match &mut self.parents {
+            Parents::Edges(ends) => {
+                ends.par_iter_mut().with_min_len(BLOCK).for_each(|ends| ends.iter_mut().for_each(place));
+            }
+            Parents::Weighted(rows) => rows.index.par_iter_mut().with_min_len(BLOCK).for_each(place),
         }
-        self.children = children;
+        self.same_vertex = order.iter().map(|&a| self.same_vertex[a as usize]).collect();
+        self.children = self.children.reordered(order);
         self
     }
 
     /// `(A, P_iA)`: what the row `i` of the prolongation takes from the coarser level.
     #[inline(always)]
-    pub(in crate::solver) fn parents(&self, i: usize) -> impl Iterator<Item = (usize, f64)> + Clone {
-        self.parents.row(i)
+    pub(in crate::solver) fn for_each_parent(&self, i: usize, take: impl FnMut(usize, f64)) {
+        self.parents.for_each(i, take);
     }
 
     /// `(i, P_iA)`: the values of the hat function of the coarse vertex `A` on the finer level.
-    pub(in crate::solver) fn children(&self, a: usize) -> impl Iterator<Item = (usize, f64)> + Clone {
-        self.children.row(a)
+    pub(in crate::solver) fn children(&self, a: usize) -> impl Iterator<Item = (usize, f64)> {
+        let weight = move |at: usize, i: u32| match self.children.weight.get(at) {
+            Some(&weight) => weight,
+            None if i == self.same_vertex[a] => 1.0,
+            None => 0.5,
+        };
+        let range = self.children.range(a);
+        range.map(move |at| (at, self.children.index[at])).map(move |(at, i)| (i as usize, weight(at, i)))
     }
 
     /// The row of the finer level that is the coarse vertex itself.
@@ -112,14 +195,25 @@ impl Transfer {
     /// `(P c)_i`.
     #[inline(always)]
     pub(in crate::solver) fn prolong(&self, i: usize, coarse: &[f64]) -> f64 {
-        self.parents(i).map(|(a, weight)| weight * coarse[a]).sum()
+        match &self.parents {
+            Parents::Edges(ends) => {
+                let [a, b] = ends[i];
+                0.5 * (coarse[a as usize] + coarse[b as usize])
+            }
+            Parents::Weighted(rows) => rows.weighted(i).map(|(a, weight)| weight * coarse[a]).sum(),
+        }
     }
 
     /// Adds `P' r` of the single entry `r_i` to the functional on the coarser level.
     #[inline(always)]
     pub(in crate::solver) fn spread(&self, i: usize, r: f64, coarse: &mut [f64]) {
-        for (a, weight) in self.parents(i) {
-            coarse[a] += weight * r;
+        match &self.parents {
+            Parents::Edges(ends) => {
+                let [a, b] = ends[i];
+                coarse[a as usize] += 0.5 * r;
+                coarse[b as usize] += 0.5 * r;
+            }
+            Parents::Weighted(rows) => rows.weighted(i).for_each(|(a, weight)| coarse[a] += weight * r),
         }
     }
 
@@ -133,25 +227,4 @@ impl Transfer {
         let at = |a: usize| self.children(a).map(|(i, weight)| weight * fine[i]).sum();
         (0..self.coarse_rows()).into_par_iter().with_min_len(BLOCK).map(at).collect()
     }
-}
-
-fn transposed(columns: usize, rows: &Weights) -> Weights {
-    let mut start = vec![0u32; columns + 1];
-    for &j in &rows.index {
-        start[j as usize + 1] += 1;
-    }
-    for j in 0..columns {
-        start[j + 1] += start[j];
-    }
-    let mut next = start.clone();
-    let (mut index, mut weight) = (vec![0; rows.index.len()], vec![0.0; rows.index.len()]);
-    for i in 0..rows.rows() {
-        for (j, value) in rows.row(i) {
-            let at = next[j] as usize;
-            index[at] = i as u32;
-            weight[at] = value;
-            next[j] += 1;
-        }
-    }
-    Weights { start, index, weight }
 }

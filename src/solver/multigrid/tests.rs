@@ -221,11 +221,10 @@ fn product(fine: &[Vec<f64>], hierarchy: &Hierarchy, l: usize) -> Vec<Vec<f64>> 
     let mut coarse = vec![vec![0.0; rows]; rows];
     for (i, row) in fine.iter().enumerate() {
         for (j, value) in row.iter().enumerate().filter(|(_, value)| **value != 0.0) {
-            for (a, p) in levels[l + 1].transfer.parents(i) {
-                for (b, q) in levels[l + 1].transfer.parents(j) {
-                    coarse[a][b] += p * value * q;
-                }
-            }
+            let transfer = &levels[l + 1].transfer;
+            transfer.for_each_parent(i, |a, p| {
+                transfer.for_each_parent(j, |b, q| coarse[a][b] += p * value * q);
+            });
         }
     }
     coarse

@@ -47,8 +47,10 @@ impl<'h> Truncation<'h> {
         let mut rows = distinct(&mut self.marked[finest], changed.iter().chain(neighbours).copied());
         for l in (0..finest).rev() {
             let fine = &self.hierarchy.levels()[l + 1];
-            let parents = rows.iter().flat_map(|&i| fine.transfer.parents(i as usize)).map(|(a, _)| a as u32);
-            rows = distinct(&mut self.marked[l], parents);
+            let mut parents = Vec::new();
+            rows.iter()
+                .for_each(|&i| fine.transfer.for_each_parent(i as usize, |a, _| parents.push(a as u32)));
+            rows = distinct(&mut self.marked[l], parents.into_iter());
             let (below, above) = self.values.split_at_mut(l + 1);
             let pattern = &self.hierarchy.levels()[l].pattern;
             for &a in rows.iter().filter(|&&a| !self.hierarchy.levels()[l].is_held(a as usize)) {
