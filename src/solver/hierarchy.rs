@@ -8,6 +8,7 @@ mod coloring;
 mod galerkin;
 mod matrix;
 mod ordering;
+mod runs;
 mod transfer;
 #[cfg(test)]
 mod tests;
@@ -15,6 +16,7 @@ mod tests;
 pub(super) use coloring::Coloring;
 pub(super) use galerkin::RowSum;
 pub(super) use matrix::{Pattern, Values};
+pub(super) use runs::{LONGEST, Runs};
 pub(super) use transfer::Transfer;
 
 use std::sync::Arc;
@@ -30,6 +32,10 @@ use ordering::{banded_orders, is_banded};
 
 /// An entry below this fraction of the diagonal does not couple two rows: rounding of a Galerkin product.
 const UNCOUPLED: f64 = 1e-10;
+
+/// Entries that differ by less than this fraction of the diagonal are the same for a correction: by the rounding of the
+/// vertices of a uniform mesh. On the finest level, whose matrix decides on the answer, there is no such allowance.
+const SAME_ENTRY: f64 = 1e-10;
 
 /// As many unknowns are solved for directly.
 const DIRECT: usize = 64;
@@ -52,6 +58,7 @@ pub(super) struct Level {
     pub(super) pattern: Pattern,
     pub(super) values: Values,
     pub(super) coloring: Coloring,
+    pub(super) runs: Runs,
     /// From the level below; that of level 0 has no rows.
     pub(super) transfer: Transfer,
 }
@@ -73,7 +80,7 @@ impl Hierarchy {
         let finest_order = orders.as_mut().and_then(Vec::pop);
         let (coloring, vertex) = finest_coloring(d, finest_order.as_deref());
         let (pattern, values) = compact_stiffness(d, &vertex);
-        let finest = Level { pattern, values, coloring, transfer: Transfer::default() };
+        let finest = Level::new(pattern, values, coloring, 0.0);
         let mut order = vertex.clone();
         let mut finest_first = vec![finest];
         for parents in ancestry.iter().rev() {
@@ -190,7 +197,7 @@ fn descend(finest_first: &mut Vec<Level>, transfer: Transfer) -> Option<Vec<u32>
 }
 
 impl Level {
-    /// A level without its transfer, its rows ordered by windows and colours; and the rows in that order.
+    /// Orders the rows of a matrix by windows and colours: a level without its transfer, and the rows in their new order.
     fn colored(pattern: Pattern, values: Values) -> (Self, Vec<u32>) {
         let coupled = |i: usize| {
             let entries = pattern.row(i).iter().zip(&values.off_diagonal[pattern.range(i)]);
@@ -200,7 +207,15 @@ impl Level {
         };
         let (coloring, rows) = Coloring::new(pattern.rows(), pattern.bandwidth(), coupled);
         let (pattern, values) = reordered((&pattern, &values), &rows, &inverse(&rows));
-        (Self { pattern, values, coloring, transfer: Transfer::default() }, rows)
+        (Self::new(pattern, values, coloring, SAME_ENTRY), rows)
+    }
+
+    /// A level without its transfer, its rows ordered by windows and colours; rows share stencils whose entries are the same up
+    /// to a fraction `same_entry` of the diagonal.
+    fn new(pattern: Pattern, mut values: Values, coloring: Coloring, same_entry: f64) -> Self {
+        let (runs, shared) = Runs::new(&coloring, &pattern, &values, same_entry);
+        values.shared = shared;
+        Self { pattern, values, coloring, runs, transfer: Transfer::default() }
     }
 
     /// Whether a vertex is on the boundary, or in no triangle.

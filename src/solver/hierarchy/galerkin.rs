@@ -5,6 +5,9 @@ use rayon::prelude::*;
 use super::matrix::{BLOCK, Pattern, Rows, Values, assemble};
 use super::transfer::Transfer;
 
+/// Blocks that share a [`RowSum`].
+const BLOCKS: usize = 4;
+
 /// The row of a coarse vertex is gathered here: which columns it has, and their entries.
 pub(in crate::solver) struct RowSum {
     /// Where a column stands among those of this row, plus one; zero elsewhere.
@@ -80,7 +83,7 @@ pub(super) fn galerkin(
 ) -> (Pattern, Values) {
     let coarse_rows = transfer.coarse_rows();
     let block = |sum: &mut RowSum, block: usize| {
-        let mut rows = Rows::default();
+        let mut rows = Rows::with_capacity(BLOCK);
         for a in block * BLOCK..((block + 1) * BLOCK).min(coarse_rows) {
             let mut diagonal = 0.0;
             if !held(a) {
@@ -98,6 +101,7 @@ pub(super) fn galerkin(
         }
         rows
     };
-    let blocks = (0..coarse_rows.div_ceil(BLOCK)).into_par_iter();
+    // Not a sum for each block: they are as long as all rows.
+    let blocks = (0..coarse_rows.div_ceil(BLOCK)).into_par_iter().with_min_len(BLOCKS);
     assemble(blocks.map_init(|| RowSum::new(coarse_rows), block).collect())
 }

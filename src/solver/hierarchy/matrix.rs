@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::galerkin::RowSum;
 use super::inverse;
+use super::runs::{LONGEST, Runs};
 use crate::discretization::Discretization;
 use crate::mesh::VertexKind;
 
@@ -24,10 +25,12 @@ pub(in crate::solver) struct Values {
     pub(in crate::solver) diagonal: Vec<f64>,
     /// The reciprocals of the diagonal; zero for the empty rows of vertices that are held.
     pub(in crate::solver) inverse: Vec<f64>,
+    /// Whether the rows of each run share a stencil.
+    pub(super) shared: Vec<bool>,
 }
 
 /// Consecutive rows of a matrix.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Rows {
     /// Where each row ends among the entries.
     pub(super) ends: Vec<usize>,
@@ -81,6 +84,56 @@ impl Values {
         sum
     }
 
+    /// Likewise for the rows of a run.
+    #[inline(always)]
+    pub(in crate::solver) fn off_diagonal_products<'p>(
+        &self,
+        (pattern, runs): (&Pattern, &Runs),
+        run: usize,
+        x: &[f64],
+        products: &'p mut [f64; LONGEST],
+    ) -> &'p [f64] {
+        let rows = runs.rows(run);
+        let products = &mut products[..rows.len()];
+        if self.shared[run] {
+            self.stencil_products(pattern, rows.start, x, products);
+        } else {
+            for (product, i) in products.iter_mut().zip(rows) {
+                *product = self.off_diagonal_product(pattern, i, x);
+            }
+        }
+        products
+    }
+
+    /// For rows that have the entries of the `first` one, each in the next column.
+    #[inline(always)]
+    fn stencil_products(&self, pattern: &Pattern, first: usize, x: &[f64], products: &mut [f64]) {
+        let range = pattern.range(first);
+        let (mut columns, mut values) = (&pattern.column[range.clone()], &self.off_diagonal[range]);
+        let rows = products.len();
+        let x = |j: &u32| &x[*j as usize..][..rows];
+        products.fill(0.0);
+        while let (Some(([j, k, l, m], columns_left)), Some(([a, b, c, d], values_left))) =
+            (columns.split_first_chunk::<4>(), values.split_first_chunk::<4>())
+        {
+            let (p, q, r, s) = (x(j), x(k), x(l), x(m));
+            for (i, sum) in products.iter_mut().enumerate() {
+                *sum += (a * p[i] + b * q[i]) + (c * r[i] + d * s[i]);
+            }
+            (columns, values) = (columns_left, values_left);
+        }
+        for (j, a) in columns.iter().zip(values) {
+            for (sum, x) in products.iter_mut().zip(x(j)) {
+                *sum += a * x;
+            }
+        }
+    }
+
+    /// The rows of a run have no common stencil any more.
+    pub(in crate::solver) fn part(&mut self, run: usize) {
+        self.shared[run] = false;
+    }
+
     /// Replaces the row `i` by a sum whose columns are in the pattern.
     pub(in crate::solver) fn set_row(&mut self, pattern: &Pattern, i: usize, sum: &RowSum) {
         for (&j, value) in pattern.row(i).iter().zip(&mut self.off_diagonal[pattern.range(i)]) {
@@ -88,6 +141,18 @@ impl Values {
         }
         self.diagonal[i] = sum.at(i);
         self.inverse[i] = reciprocal(self.diagonal[i]);
+    }
+}
+
+impl Rows {
+    /// Room for so many rows of a triangulation, whose vertices have six neighbours on average.
+    pub(super) fn with_capacity(rows: usize) -> Self {
+        Self {
+            ends: Vec::with_capacity(rows),
+            column: Vec::with_capacity(6 * rows),
+            off_diagonal: Vec::with_capacity(6 * rows),
+            diagonal: Vec::with_capacity(rows),
+        }
     }
 }
 
@@ -100,6 +165,7 @@ pub(super) fn assemble(blocks: Vec<Rows>) -> (Pattern, Values) {
         off_diagonal: Vec::with_capacity(entries),
         diagonal: Vec::with_capacity(rows),
         inverse: Vec::with_capacity(rows),
+        shared: Vec::new(),
     };
     pattern.start.push(0);
     for block in blocks {
@@ -124,7 +190,7 @@ pub(super) fn reordered(
     position: &[u32],
 ) -> (Pattern, Values) {
     let block = |block: &[u32]| {
-        let mut rows = Rows::default();
+        let mut rows = Rows::with_capacity(BLOCK);
         for &old in block {
             let range = pattern.range(old as usize);
             rows.column.extend(pattern.column[range.clone()].iter().map(|&j| position[j as usize]));
@@ -143,7 +209,7 @@ pub(super) fn compact_stiffness(d: &Discretization, order: &[u32]) -> (Pattern, 
     let kind = d.mesh().kind();
     let position = inverse(order);
     let block = |block: &[u32]| {
-        let mut rows = Rows::default();
+        let mut rows = Rows::with_capacity(BLOCK);
         for &a in block {
             let a = a as usize;
             let mut diagonal = 0.0;

@@ -119,3 +119,76 @@ fn algebraic_levels_keep_constants_and_signs() {
     }
     assert!(plain > 100);
 }
+
+/// The products of a level with a vector by runs, and row by row.
+fn products(level: &Level, x: &[f64]) -> [Vec<f64>; 2] {
+    let Level { pattern, values, coloring, runs, .. } = level;
+    let mut by_runs = Vec::new();
+    for (window, color) in (0..coloring.windows()).flat_map(|w| (0..coloring.colors()).map(move |c| (w, c))) {
+        let rows: Vec<usize> = runs.of(window, color).flat_map(|run| runs.rows(run)).collect();
+        assert!(rows.into_iter().eq(coloring.rows(window, color)), "the runs of a colour are its rows");
+        for run in runs.of(window, color) {
+            assert!(runs.rows(run).all(|i| runs.with_row(i) == run));
+            let mut products = [0.0; LONGEST];
+            by_runs.extend(values.off_diagonal_products((pattern, runs), run, x, &mut products));
+        }
+    }
+    [by_runs, (0..x.len()).map(|i| values.off_diagonal_product(pattern, i, x)).collect()]
+}
+
+/// The part of the rows that are worked on by stencils.
+fn shared(level: &Level) -> f64 {
+    let runs = (0..level.values.shared.len()).filter(|&run| level.values.shared[run]);
+    runs.map(|run| level.runs.rows(run).len()).sum::<usize>() as f64 / level.pattern.rows() as f64
+}
+
+/// Numbers without a pattern.
+fn scattered(count: usize) -> Vec<f64> {
+    (0..count).map(|i| (i as f64).sin()).collect()
+}
+
+#[test]
+fn products_by_stencils_are_those_of_the_rows() {
+    let uniform = |cells: usize| rectangle([0.0, 0.0], [1.0, 1.0], [cells; 2], Pattern::Right).unwrap();
+    // (mesh, whether its finest level has common stencils, and whether the one below has)
+    for (mesh, expected) in [
+        (uniform(64), [true, true]),
+        // A third is no binary fraction: entries differ by rounding, which only corrections may overlook.
+        (uniform(48 * 3), [false, true]),
+        (irregular(24).refine().mesh, [false, false]),
+    ] {
+        let hierarchy = hierarchy_of(&mesh);
+        for (below, expected) in expected.into_iter().enumerate() {
+            let level = &hierarchy.levels()[hierarchy.finest() - below];
+            assert_eq!(shared(level) > 0.5, expected, "{below} below: {}", shared(level));
+            let [by_runs, by_rows] = products(level, &scattered(level.pattern.rows()));
+            let defect = by_runs.iter().zip(&by_rows).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(if below == 0 { defect == 0.0 } else { defect < ROUNDING }, "{below} below: {defect}");
+        }
+    }
+}
+
+#[test]
+fn a_row_that_differs_has_no_part_in_a_stencil() {
+    let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [64, 64], Pattern::Right).unwrap();
+    let hierarchy = hierarchy_of(&mesh);
+    let level = &hierarchy.levels()[hierarchy.finest()];
+    let first = |run: usize| level.runs.rows(run).start;
+    let has_stencil = |&run: &usize| level.values.shared[run] && !level.pattern.row(first(run)).is_empty();
+    let run = (0..level.values.shared.len()).find(has_stencil).expect("there is a stencil");
+    let changed = first(run) + 1;
+    let mut values = level.values.clone();
+    values.off_diagonal[level.pattern.range(changed)][0] *= 1.5;
+    let mut other = Level { values, ..level.clone() };
+    let x = scattered(level.pattern.rows());
+    let differs = |level: &Level| {
+        let [by_runs, by_rows] = products(level, &x);
+        by_runs != by_rows
+    };
+    assert!(differs(&other), "the products know nothing of the change");
+    other.values.part(run);
+    assert!(!differs(&other));
+    let found = Level::new(other.pattern, other.values, other.coloring, 0.0);
+    assert!(!found.values.shared[found.runs.with_row(changed)]);
+    assert!(!differs(&found));
+}

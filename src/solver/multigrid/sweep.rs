@@ -5,7 +5,7 @@
 
 use std::ops::Range;
 
-use crate::solver::hierarchy::{Level, Values};
+use crate::solver::hierarchy::{LONGEST, Level, Values};
 
 /// Sweeps between two corrections on the finest level.
 const SWEEPS: usize = 2;
@@ -81,11 +81,12 @@ impl Bounded<'_> {
             if stage == 0 {
                 found.cut += self.correct(coloring.window(window), old, correction, &mut iterate);
             } else if stage <= relaxations {
-                self.relax(coloring.rows(window, (stage - 1) % colors), iterate.x);
+                self.relax(self.level.runs.of(window, (stage - 1) % colors), iterate.x);
             } else {
-                let last = coloring.rows(window, colors - 1);
-                self.settle(coloring.window(window).start..last.start, &mut iterate, &mut found);
-                self.settle_last(last, &mut iterate, &mut found);
+                for color in 0..colors - 1 {
+                    self.settle(self.level.runs.of(window, color), &mut iterate, &mut found);
+                }
+                self.settle_last(coloring.rows(window, colors - 1), &mut iterate, &mut found);
             }
         });
         found
@@ -122,31 +123,42 @@ impl Bounded<'_> {
         (larger(corrected, self.lower), corrected < self.lower)
     }
 
-    fn relax(&self, rows: Range<usize>, x: &mut [f64]) {
-        let Level { pattern, values, .. } = self.level;
-        for i in rows {
-            let off = values.off_diagonal_product(pattern, i, x);
-            x[i] = larger((self.b[i] - off) * values.inverse[i], self.lower);
+    fn relax(&self, runs: Range<usize>, x: &mut [f64]) {
+        let Level { pattern, values, runs: all, .. } = self.level;
+        let mut products = [0.0; LONGEST];
+        for run in runs {
+            let off = values.off_diagonal_products((pattern, all), run, x, &mut products);
+            let rows = all.rows(run);
+            let (b, inverse) = (&self.b[rows.clone()], &values.inverse[rows.clone()]);
+            for (((x, b), off), inverse) in x[rows].iter_mut().zip(b).zip(off).zip(inverse) {
+                *x = larger((b - off) * inverse, self.lower);
+            }
         }
     }
 
-    /// Residual, energy, contact and restriction of some rows.
-    fn settle(&self, rows: Range<usize>, iterate: &mut Iterate, found: &mut Found) {
+    /// Residual, energy, contact and restriction of the rows of some runs.
+    fn settle(&self, runs: Range<usize>, iterate: &mut Iterate, found: &mut Found) {
+        let Level { pattern, values, runs: all, .. } = self.level;
+        let mut products = [0.0; LONGEST];
         let (mut energy, mut violation) = (0.0, found.violation);
-        for i in rows {
-            let (x, r) = (iterate.x[i], self.residual(i, iterate.x));
-            energy -= 0.5 * x * (r + self.b[i]);
-            let mut defect = r;
-            let mut pressed = false;
-            if x > self.lower {
-                defect = r.abs() - ROUNDING * self.level.values.diagonal[i] * x.abs();
-            } else {
-                pressed = self.is_pressed(i, r);
-            }
-            violation = larger(violation, defect * self.weight[i]);
-            iterate.freeze(i, pressed);
-            if !pressed {
-                self.level.transfer.spread(i, r, iterate.coarse);
+        for run in runs {
+            let off = values.off_diagonal_products((pattern, all), run, iterate.x, &mut products);
+            for (i, off) in all.rows(run).zip(off) {
+                let x = iterate.x[i];
+                let r = self.b[i] - values.diagonal[i] * x - off;
+                energy -= 0.5 * x * (r + self.b[i]);
+                let mut defect = r;
+                let mut pressed = false;
+                if x > self.lower {
+                    defect = r.abs() - ROUNDING * values.diagonal[i] * x.abs();
+                } else {
+                    pressed = self.is_pressed(i, r);
+                }
+                violation = larger(violation, defect * self.weight[i]);
+                iterate.freeze(i, pressed);
+                if !pressed {
+                    self.level.transfer.spread(i, r, iterate.coarse);
+                }
             }
         }
         found.energy += energy;
@@ -233,7 +245,7 @@ pub(super) fn descend(level: &Level, values: &Values, b: &[f64], x: &mut [f64], 
                 x[i] = b[i] * values.inverse[i];
             }
         } else if stage < relaxations {
-            relax(level, values, b, coloring.rows(window, stage % colors), x);
+            relax(level, values, b, level.runs.of(window, stage % colors), x);
         } else {
             restrict_residual(level, values, b, window, x, coarse);
         }
@@ -265,7 +277,7 @@ pub(super) fn ascend(
                 }
             }
         } else if stage <= relaxations {
-            relax(level, values, b, coloring.rows(window, (stage - 1) % colors), x);
+            relax(level, values, b, level.runs.of(window, (stage - 1) % colors), x);
         } else if let Some(coarse) = &mut coarse {
             restrict_residual(level, values, b, window, x, coarse);
         }
@@ -281,17 +293,28 @@ fn restrict_residual(
     x: &[f64],
     coarse: &mut [f64],
 ) {
-    let Level { pattern, coloring, transfer, .. } = level;
-    for i in coloring.window(window).start..coloring.rows(window, coloring.colors() - 1).start {
-        let off = values.off_diagonal_product(pattern, i, x);
-        transfer.spread(i, b[i] - values.diagonal[i] * x[i] - off, coarse);
+    let Level { pattern, coloring, runs, transfer, .. } = level;
+    let mut products = [0.0; LONGEST];
+    for color in 0..coloring.colors() - 1 {
+        for run in runs.of(window, color) {
+            let off = values.off_diagonal_products((pattern, runs), run, x, &mut products);
+            for (i, off) in runs.rows(run).zip(off) {
+                transfer.spread(i, b[i] - values.diagonal[i] * x[i] - off, coarse);
+            }
+        }
     }
 }
 
-fn relax(level: &Level, values: &Values, b: &[f64], rows: Range<usize>, x: &mut [f64]) {
-    for i in rows {
-        let off = values.off_diagonal_product(&level.pattern, i, x);
-        x[i] = (b[i] - off) * values.inverse[i];
+/// Gauss-Seidel for the rows of some runs.
+fn relax(level: &Level, values: &Values, b: &[f64], runs: Range<usize>, x: &mut [f64]) {
+    let mut products = [0.0; LONGEST];
+    for run in runs {
+        let off = values.off_diagonal_products((&level.pattern, &level.runs), run, x, &mut products);
+        let rows = level.runs.rows(run);
+        let (b, inverse) = (&b[rows.clone()], &values.inverse[rows.clone()]);
+        for (((x, b), off), inverse) in x[rows].iter_mut().zip(b).zip(off).zip(inverse) {
+            *x = (b - off) * inverse;
+        }
     }
 }
 

@@ -8,7 +8,7 @@ use crate::mesh::samples::{Random, irregular};
 use crate::mesh::{Mesh, MeshSize, Pattern, disk, generate, l_shape, rectangle};
 use crate::problem::{Case, ContactProblem, Domain, Function};
 use crate::solver::ActiveSet;
-use crate::solver::hierarchy::Hierarchy;
+use crate::solver::hierarchy::{Hierarchy, LONGEST, Values};
 use sweep::Bounded;
 use truncation::Truncation;
 
@@ -285,6 +285,45 @@ fn truncated_matrices_follow_every_change_of_the_contact_set() {
         truncation.reset(hierarchy.finest());
         assert!(truncation_defect(&hierarchy, &truncation, &vec![false; rows]) < ROUNDING);
     }
+}
+
+#[test]
+fn truncated_rows_have_no_part_in_a_stencil() {
+    /// Rounding of products of size ten.
+    const ROUNDING: f64 = 1e-12;
+    let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [128; 2], Pattern::Right).unwrap();
+    let d = Discretization::new(&problem([1.0, 1.0], 0.05), &mesh).unwrap();
+    let hierarchy = Hierarchy::new(&d);
+    let finest = hierarchy.finest();
+    let mut truncation = Truncation::new(&hierarchy);
+    truncation.reset(finest);
+    let level = &hierarchy.levels()[finest - 1];
+    let x: Vec<f64> = (0..level.pattern.rows()).map(|i| (i as f64).sin()).collect();
+    // The largest difference of the products by runs from those row by row.
+    let defect = |values: &Values| {
+        let mut defect: f64 = 0.0;
+        for run in 0..level.runs.with_row(x.len() - 1) {
+            let mut products = [0.0; LONGEST];
+            let products =
+                values.off_diagonal_products((&level.pattern, &level.runs), run, &x, &mut products);
+            for (i, product) in level.runs.rows(run).zip(products) {
+                defect = defect.max((product - values.off_diagonal_product(&level.pattern, i, &x)).abs());
+            }
+        }
+        defect
+    };
+    let touches = |&a: &u32| {
+        let [x, y] = mesh.points()[a as usize];
+        x.hypot(y) < 0.7
+    };
+    let frozen: Vec<bool> = hierarchy.vertex().iter().map(touches).collect();
+    let changed: Vec<u32> = (0..frozen.len() as u32).filter(|&i| frozen[i as usize]).collect();
+    truncation.update(finest, &frozen, &changed);
+    assert!(defect(truncation.values(finest - 1)) < ROUNDING);
+    // The twin: the rows are changed, but nobody tells the runs.
+    let mut unaware = level.values.clone();
+    unaware.off_diagonal.clone_from(&truncation.values(finest - 1).off_diagonal);
+    assert!(defect(&unaware) > 0.1);
 }
 
 proptest! {

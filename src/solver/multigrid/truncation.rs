@@ -52,15 +52,21 @@ impl<'h> Truncation<'h> {
                 .for_each(|&i| fine.transfer.for_each_parent(i as usize, |a, _| parents.push(a as u32)));
             rows = distinct(&mut self.marked[l], parents.into_iter());
             let (below, above) = self.values.split_at_mut(l + 1);
-            let pattern = &self.hierarchy.levels()[l].pattern;
-            for &a in rows.iter().filter(|&&a| !self.hierarchy.levels()[l].is_held(a as usize)) {
+            let level = &self.hierarchy.levels()[l];
+            let mut run = 0;
+            for &a in rows.iter().filter(|&&a| !level.is_held(a as usize)) {
+                // The rows come nearly in order.
+                if !level.runs.rows(run).contains(&(a as usize)) {
+                    run = level.runs.with_row(a as usize);
+                }
+                below[l].part(run);
                 let sum = &mut self.sums[l];
                 if l + 1 == finest {
                     sum.gather((&fine.pattern, &fine.values), &fine.transfer, a as usize, |i| frozen[i]);
                 } else {
                     sum.gather((&fine.pattern, &above[0]), &fine.transfer, a as usize, |_| false);
                 }
-                below[l].set_row(pattern, a as usize, sum);
+                below[l].set_row(&level.pattern, a as usize, sum);
             }
         }
         !rows.is_empty()
