@@ -1,5 +1,7 @@
 //! How far displacements, multipliers and action are from solving the full discrete problem (4.7).
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use super::Action;
@@ -172,12 +174,16 @@ fn variational_inequality(
 
 /// `int phi_a` over vertices, triangle by triangle: what `|D_a|` must be by (4.17).
 fn hat_integrals(d: &Discretization) -> Vec<f64> {
-    let mut integrals = vec![0.0; d.mesh().points().len()];
-    for (t, corners) in d.mesh().triangles().iter().enumerate() {
-        let third = d.mesh().triangle_area(t) / 3.0;
-        for &a in corners {
-            integrals[a] += third;
+    let over = |triangles: Range<usize>| {
+        let mut integrals = vec![0.0; d.mesh().points().len()];
+        for t in triangles {
+            let third = d.mesh().triangle_area(t) / 3.0;
+            d.mesh().triangles()[t].iter().for_each(|&a| integrals[a] += third);
         }
-    }
+        integrals
+    };
+    let triangles = d.mesh().triangles().len();
+    let (mut integrals, others) = rayon::join(|| over(0..triangles / 2), || over(triangles / 2..triangles));
+    integrals.iter_mut().zip(others).for_each(|(integral, other)| *integral += other);
     integrals
 }

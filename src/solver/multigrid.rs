@@ -71,10 +71,12 @@ impl Multigrid {
         let (gap, sum) = (gap?, sum?);
         let level_iterations: Vec<usize> =
             gap.cycles.iter().zip(&sum.cycles).map(|(a, b)| *a.max(b)).collect();
-        let w = hierarchy.to_vertices(&gap.x);
-        let y = hierarchy.to_vertices(&gap.y);
+        let (w, (s, y)) = rayon::join(
+            || hierarchy.to_vertices(&gap.x),
+            || (hierarchy.to_vertices(&sum.x), hierarchy.to_vertices(&gap.y)),
+        );
         Ok(Candidate {
-            displacement: decoupled.recombine(&hierarchy.to_vertices(&sum.x), &w),
+            displacement: decoupled.recombine(&s, &w),
             multiplier: d.interior().iter().map(|&a| decoupled.gap_tension() * y[a]).collect(),
             statistics: Statistics {
                 status: if gap.status == Status::Solved { sum.status } else { gap.status },

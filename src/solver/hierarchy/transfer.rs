@@ -51,13 +51,9 @@ impl Parents {
     fn for_each(&self, i: usize, mut take: impl FnMut(usize, f64)) {
         match self {
             Self::Edges(ends) => {
-                let [a, b] = ends[i].map(|a| a as usize);
-                if a == b {
-                    take(a, 1.0);
-                } else {
-                    take(a, 0.5);
-                    take(b, 0.5);
-                }
+                let ends = ends[i];
+                let (parents, weight) = if ends[0] == ends[1] { (1, 1.0) } else { (2, 0.5) };
+                ends[..parents].iter().for_each(|&a| take(a as usize, weight));
             }
             Self::Weighted(rows) => rows.weighted(i).for_each(|(a, weight)| take(a, weight)),
         }
