@@ -198,12 +198,13 @@ fn the_active_set_needs_one_solve_from_its_own_answer_and_few_from_a_nearby_one(
 
 #[test]
 fn the_active_set_stopped_early_is_rejected() {
-    let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [24, 24], Pattern::Right).unwrap();
+    // Where coarser meshes are known, the contact set that they guess may be exact; 25 cells have none.
+    let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [25, 25], Pattern::Right).unwrap();
     let problem = exact(Case::Circle, &[]).problem().unwrap();
     let d = Discretization::new(&problem, &mesh).unwrap();
-    let options = SolverOptions { max_iterations: Some(2), ..SolverOptions::default() };
+    let options = SolverOptions { max_iterations: Some(1), ..SolverOptions::default() };
     let stopped = ActiveSet.solve(&d, &options).expect("it runs");
-    assert_eq!((stopped.statistics.status, stopped.statistics.iterations), (Status::IterationLimit, 2));
+    assert_eq!((stopped.statistics.status, stopped.statistics.iterations), (Status::IterationLimit, 1));
     assert!(certify(&d, stopped, TOLERANCE).is_err());
 }
 
