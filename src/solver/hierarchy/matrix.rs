@@ -156,27 +156,45 @@ impl Rows {
     }
 }
 
-/// Puts blocks of consecutive rows together.
+/// Puts blocks of consecutive rows together, all of them at once.
 pub(super) fn assemble(blocks: Vec<Rows>) -> (Pattern, Values) {
     let count = |of: fn(&Rows) -> usize| blocks.iter().map(of).sum::<usize>();
     let (rows, entries) = (count(|block| block.ends.len()), count(|block| block.column.len()));
-    let mut pattern = Pattern { start: Vec::with_capacity(rows + 1), column: Vec::with_capacity(entries) };
+    let mut pattern = Pattern { start: vec![0; rows + 1], column: vec![0; entries] };
     let mut values = Values {
-        off_diagonal: Vec::with_capacity(entries),
-        diagonal: Vec::with_capacity(rows),
-        inverse: Vec::with_capacity(rows),
+        off_diagonal: vec![0.0; entries],
+        diagonal: vec![0.0; rows],
+        inverse: vec![0.0; rows],
         shared: Vec::new(),
     };
-    pattern.start.push(0);
-    for block in blocks {
-        let offset = pattern.column.len();
-        pattern.start.extend(block.ends.iter().map(|end| (offset + end) as u32));
-        pattern.column.extend(block.column);
-        values.off_diagonal.extend(block.off_diagonal);
-        values.inverse.extend(block.diagonal.iter().copied().map(reciprocal));
-        values.diagonal.extend(block.diagonal);
-    }
+    let (mut start, mut column) = (&mut pattern.start[1..], &mut pattern.column[..]);
+    let mut off_diagonal = &mut values.off_diagonal[..];
+    let (mut diagonal, mut inverse) = (&mut values.diagonal[..], &mut values.inverse[..]);
+    let mut offset = 0;
+    rayon::scope(|scope| {
+        for block in blocks {
+            let (rows, entries) = (block.ends.len(), block.column.len());
+            let start = split_off(&mut start, rows);
+            let column = split_off(&mut column, entries);
+            let off_diagonal = split_off(&mut off_diagonal, entries);
+            let diagonal = split_off(&mut diagonal, rows);
+            let inverse = split_off(&mut inverse, rows);
+            scope.spawn(move |_| {
+                start.iter_mut().zip(&block.ends).for_each(|(start, end)| *start = (offset + end) as u32);
+                column.copy_from_slice(&block.column);
+                off_diagonal.copy_from_slice(&block.off_diagonal);
+                diagonal.copy_from_slice(&block.diagonal);
+                inverse.iter_mut().zip(&block.diagonal).for_each(|(inverse, &a)| *inverse = reciprocal(a));
+            });
+            offset += entries;
+        }
+    });
     (pattern, values)
+}
+
+/// The first elements of a slice, which keeps the others.
+fn split_off<'a, T>(slice: &mut &'a mut [T], count: usize) -> &'a mut [T] {
+    slice.split_off_mut(..count).expect("blocks are parts of the whole")
 }
 
 fn reciprocal(value: f64) -> f64 {
