@@ -4,7 +4,7 @@
 //! Kornhuber, J. Comput. Math. 27 (2009) 1). Only rows near the rim of the contact set differ from what is known, so a change
 //! of the set costs as much as it is long.
 
-use crate::solver::hierarchy::{Hierarchy, RowSum, Values};
+use crate::solver::hierarchy::{Hierarchy, RowSum, Transfer, Values};
 
 /// The truncated matrices below a finest level.
 pub(super) struct Truncation<'h> {
@@ -18,7 +18,7 @@ pub(super) struct Truncation<'h> {
 impl<'h> Truncation<'h> {
     /// Without matrices yet: call [`reset`](Self::reset) next.
     pub(super) fn new(hierarchy: &'h Hierarchy) -> Self {
-        let sizes = || hierarchy.levels().iter().map(|level| level.pattern.rows());
+        let sizes = || hierarchy.levels()[..hierarchy.finest()].iter().map(|level| level.pattern.rows());
         Self {
             hierarchy,
             values: vec![Values::default(); hierarchy.finest()],
@@ -41,21 +41,22 @@ impl<'h> Truncation<'h> {
 
     /// Follows the contact set of the level `finest`, which has `changed`. Returns whether that has reached level 0.
     pub(super) fn update(&mut self, finest: usize, frozen: &[bool], changed: &[u32]) -> bool {
-        let top = &self.hierarchy.levels()[finest];
-        // An entry of the matrix is cut off with its row or its column.
-        let neighbours = changed.iter().flat_map(|&i| top.pattern.row(i as usize));
-        let mut rows = distinct(&mut self.marked[finest], changed.iter().chain(neighbours).copied());
+        let mut rows = Vec::new();
         for l in (0..finest).rev() {
             let fine = &self.hierarchy.levels()[l + 1];
-            let mut parents = Vec::new();
-            rows.iter()
-                .for_each(|&i| fine.transfer.for_each_parent(i as usize, |a, _| parents.push(a as u32)));
-            rows = distinct(&mut self.marked[l], parents.into_iter());
+            let marked = &mut self.marked[l];
+            rows = if l + 1 == finest {
+                // An entry of the matrix is cut off with its row or its column.
+                let neighbours = changed.iter().flat_map(|&i| fine.pattern.row(i as usize));
+                let neighbours = neighbours.filter(|&&j| !frozen[j as usize]);
+                parents(&fine.transfer, changed.iter().chain(neighbours), marked)
+            } else {
+                parents(&fine.transfer, rows.iter(), marked)
+            };
             let (below, above) = self.values.split_at_mut(l + 1);
             let level = &self.hierarchy.levels()[l];
             let mut run = 0;
             for &a in rows.iter().filter(|&&a| !level.is_held(a as usize)) {
-                // The rows come nearly in order.
                 if !level.runs.rows(run).contains(&(a as usize)) {
                     run = level.runs.with_row(a as usize);
                 }
@@ -73,11 +74,17 @@ impl<'h> Truncation<'h> {
     }
 }
 
-/// Each row once.
-fn distinct(marked: &mut [bool], rows: impl Iterator<Item = u32>) -> Vec<u32> {
-    let found: Vec<u32> = rows.filter(|&row| !std::mem::replace(&mut marked[row as usize], true)).collect();
-    for &row in &found {
-        marked[row as usize] = false;
-    }
-    found
+/// The rows of the coarser level that depend on these of the finer one, each once and in order.
+fn parents<'a>(transfer: &Transfer, rows: impl Iterator<Item = &'a u32>, marked: &mut [bool]) -> Vec<u32> {
+    let mut parents = Vec::new();
+    rows.for_each(|&i| {
+        transfer.for_each_parent(i as usize, |a, _| {
+            if !std::mem::replace(&mut marked[a], true) {
+                parents.push(a as u32);
+            }
+        });
+    });
+    parents.iter().for_each(|&a| marked[a as usize] = false);
+    parents.sort_unstable();
+    parents
 }
