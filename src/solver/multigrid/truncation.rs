@@ -41,18 +41,14 @@ impl<'h> Truncation<'h> {
 
     /// Follows the contact set of the level `finest`, which has `changed`. Returns whether that has reached level 0.
     pub(super) fn update(&mut self, finest: usize, frozen: &[bool], changed: &[u32]) -> bool {
-        let mut rows = Vec::new();
+        let top = &self.hierarchy.levels()[finest];
+        // An entry of the matrix is cut off with its row or its column. Neighbours in contact have no entries left.
+        let neighbours = changed.iter().flat_map(|&i| top.pattern.row(i as usize));
+        let neighbours = neighbours.filter(|&&j| !frozen[j as usize]);
+        let mut rows: Vec<u32> = changed.iter().chain(neighbours).copied().collect();
         for l in (0..finest).rev() {
             let fine = &self.hierarchy.levels()[l + 1];
-            let marked = &mut self.marked[l];
-            rows = if l + 1 == finest {
-                // An entry of the matrix is cut off with its row or its column.
-                let neighbours = changed.iter().flat_map(|&i| fine.pattern.row(i as usize));
-                let neighbours = neighbours.filter(|&&j| !frozen[j as usize]);
-                parents(&fine.transfer, changed.iter().chain(neighbours), marked)
-            } else {
-                parents(&fine.transfer, rows.iter(), marked)
-            };
+            rows = parents(&fine.transfer, &rows, &mut self.marked[l]);
             let (below, above) = self.values.split_at_mut(l + 1);
             let level = &self.hierarchy.levels()[l];
             let mut run = 0;
@@ -75,15 +71,15 @@ impl<'h> Truncation<'h> {
 }
 
 /// The rows of the coarser level that depend on these of the finer one, each once and in order.
-fn parents<'a>(transfer: &Transfer, rows: impl Iterator<Item = &'a u32>, marked: &mut [bool]) -> Vec<u32> {
+fn parents(transfer: &Transfer, rows: &[u32], marked: &mut [bool]) -> Vec<u32> {
     let mut parents = Vec::new();
-    rows.for_each(|&i| {
+    for &i in rows {
         transfer.for_each_parent(i as usize, |a, _| {
             if !std::mem::replace(&mut marked[a], true) {
                 parents.push(a as u32);
             }
         });
-    });
+    }
     parents.iter().for_each(|&a| marked[a as usize] = false);
     parents.sort_unstable();
     parents
