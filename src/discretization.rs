@@ -6,7 +6,8 @@ use thiserror::Error;
 
 use crate::fem::{LoadMoments, NotFinite, stiffness_around};
 use crate::mesh::{Mesh, VertexKind, VertexTriangles};
-use crate::problem::{ContactProblem, Number};
+use crate::problem::ContactProblem;
+use crate::text::Number;
 
 /// Tensions, displacements and loads must lie between the inverse of this and this: energies must not overflow.
 const LARGEST: f64 = 1e40;

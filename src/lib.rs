@@ -8,6 +8,8 @@
 //! Belgacem, C. Bernardi, A. Blouza, M. Vohralik, Math. Model. Nat. Phenom. 4 (2009).
 #![deny(missing_docs)]
 
+mod text;
+pub mod geometry;
 pub mod problem;
 pub mod mesh;
 pub mod fem;

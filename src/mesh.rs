@@ -22,6 +22,8 @@ mod structured;
 
 use std::sync::Arc;
 
+use crate::geometry::{distance_sq, twice_signed_area};
+
 pub use ancestry::Parents;
 pub use bisect::Bisection;
 pub use check::MeshError;
@@ -112,14 +114,4 @@ impl Mesh {
         }
         (lower, upper)
     }
-}
-
-/// Twice the area of a triangle, positive when its corners run counterclockwise.
-pub(crate) fn twice_signed_area([a, b, c]: [[f64; 2]; 3]) -> f64 {
-    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-}
-
-/// The square of the distance of two points.
-pub(crate) fn distance_sq(a: [f64; 2], b: [f64; 2]) -> f64 {
-    (b[0] - a[0]).powi(2) + (b[1] - a[1]).powi(2)
 }

@@ -10,19 +10,15 @@ mod cases;
 mod domain;
 mod expression;
 mod function;
-mod number;
-mod spelling;
 
-pub use cases::{Case, CaseError, ExactSolution, Interface, Parameter, Range};
+pub use cases::{Case, CaseError, ExactSolution, Parameter, Range};
 pub use domain::Domain;
-pub(crate) use domain::ring_area;
 pub use expression::{Expression, ExpressionError};
 pub use function::Function;
 
-pub(crate) use number::Number;
-pub(crate) use spelling::{excerpt, nearest};
-
 use thiserror::Error;
+
+use crate::text::Number;
 
 /// The data of (1.1): tensions, loads, boundary height. Valid once built, then immutable.
 ///

@@ -21,8 +21,8 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::discretization::Discretization;
-use crate::problem::Number;
 use crate::qp::{Answer, BackendError, Status};
+use crate::text::Number;
 use cholesky::NotFactored;
 
 /// Anything that solves (3.4): a [`QpBackend`](crate::qp::QpBackend) by way of [`QpSolver`], or a method of its own.

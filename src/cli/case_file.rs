@@ -11,8 +11,9 @@ use toml::Value;
 use super::Failure;
 use super::section::{Section, as_number};
 use crate::mesh::{MeshSize, Pattern};
-use crate::problem::{Case, ContactProblem, Domain, ExactSolution, Expression, Function, Number, excerpt};
+use crate::problem::{Case, ContactProblem, Domain, ExactSolution, Expression, Function};
 use crate::study::Tolerance;
+use crate::text::{Number, excerpt};
 
 /// Cells of a structured mesh when the case file does not say.
 const DEFAULT_CELLS: usize = 64;

@@ -3,7 +3,7 @@
 use toml::{Table, Value};
 
 use super::Failure;
-use crate::problem::{excerpt, nearest};
+use crate::text::{excerpt, nearest};
 
 /// Letters that may be wrong, missing, surplus or exchanged in a misspelt key.
 const MAX_SLIPS: usize = 2;

@@ -6,7 +6,8 @@ use super::MeasureError;
 use super::multigrid::Multigrid;
 use crate::discretization::Discretization;
 use crate::fem::CutRule;
-use crate::mesh::{Mesh, SubTriangulation, twice_signed_area};
+use crate::geometry::twice_signed_area;
+use crate::mesh::{Mesh, SubTriangulation};
 
 /// Triangles that are integrated together: enough for all threads, few enough to need no memory.
 const BATCH: usize = 1 << 16;

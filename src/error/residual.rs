@@ -3,7 +3,8 @@
 use super::MeasureError;
 use crate::discretization::Discretization;
 use crate::fem::gradient;
-use crate::mesh::{HalfEdges, distance_sq};
+use crate::geometry::distance_sq;
+use crate::mesh::HalfEdges;
 
 /// The squared indicators of the residual estimator (Veeser, SIAM J. Numer. Anal. 39 (2001) 146; Bartels, Carstensen, Numer.
 /// Math. 99 (2004) 225), summed over the membranes:

@@ -1,8 +1,8 @@
 //! Quadrature that follows the curves where a function is less smooth, and a singular corner.
 
 use super::DEGREE_4;
-use crate::mesh::{distance_sq, twice_signed_area};
-use crate::problem::Interface;
+use crate::geometry::Interface;
+use crate::geometry::{distance_sq, twice_signed_area};
 
 /// Levels of subdivision towards a singular corner for each level along the curves: the mass of a squared gradient
 /// `r^(-2/3)` that is left in the last triangle is the fraction `2^(-4/3)` per level.

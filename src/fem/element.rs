@@ -1,6 +1,6 @@
 //! The P1 element on one triangle.
 
-use crate::mesh::twice_signed_area;
+use crate::geometry::twice_signed_area;
 
 /// `K_ij = int grad phi_i . grad phi_j` on the triangle with these corners: `e_i . e_j / (4 |T|)`, where `e_i` is the
 /// edge opposite to corner `i`. Symmetric to the last bit.

@@ -5,7 +5,8 @@ use thiserror::Error;
 
 use super::moments::LoadMoments;
 use crate::mesh::{Mesh, VertexTriangles};
-use crate::problem::{Function, Number};
+use crate::problem::Function;
+use crate::text::Number;
 
 /// A function has no finite value at a quadrature point.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]

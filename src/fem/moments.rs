@@ -5,7 +5,8 @@ use rayon::prelude::*;
 use super::CutRule;
 use super::load::NotFinite;
 use super::quadrature::DEGREE_4;
-use crate::mesh::{Mesh, VertexTriangles, twice_signed_area};
+use crate::geometry::twice_signed_area;
+use crate::mesh::{Mesh, VertexTriangles};
 use crate::problem::Function;
 
 /// Triangles whose quadrature points are evaluated together.

@@ -1,6 +1,7 @@
 //! Raviart-Thomas fields of lowest order on `S_h`.
 
-use crate::mesh::{SubTriangulation, distance_sq, twice_signed_area};
+use crate::geometry::{distance_sq, twice_signed_area};
+use crate::mesh::SubTriangulation;
 
 /// A field that is `c + d x` on each triangle of `S_h` (4.12), given by its fluxes through the edges.
 ///

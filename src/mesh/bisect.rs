@@ -6,7 +6,8 @@ mod tests;
 use super::check::{Sense, resolution, sense};
 use super::circle::Circle;
 use super::edges::Edges;
-use super::{Mesh, MeshError, VertexKind, distance_sq};
+use super::{Mesh, MeshError, VertexKind};
+use crate::geometry::distance_sq;
 use crate::problem::Domain;
 
 /// Edges are at least this many times as long as the distance at which points are told apart: then [`Mesh::new`] accepts

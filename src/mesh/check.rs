@@ -10,8 +10,9 @@ use thiserror::Error;
 
 use super::adjacency::{HalfEdge, HalfEdges};
 use super::quality::angles;
-use super::{Mesh, Refinement, VertexKind, distance_sq, twice_signed_area};
-use crate::problem::Number;
+use super::{Mesh, Refinement, VertexKind};
+use crate::geometry::{distance_sq, twice_signed_area};
+use crate::text::Number;
 pub(super) use boundary::resolution;
 use boundary::{Boundary, BoundaryEdge};
 use pieces::check_pieces;

@@ -1,7 +1,8 @@
 //! The dual mesh `D_h` of section 4.2 and the triangulation `S_h` between it and `T_h`.
 
 use super::midpoints::Midpoints;
-use super::{Mesh, MeshError, VertexKind, VertexTriangles, twice_signed_area};
+use super::{Mesh, MeshError, VertexKind, VertexTriangles};
+use crate::geometry::twice_signed_area;
 
 /// `S_h` on all of `omega`: every triangle `K` divided into six by its medians.
 ///

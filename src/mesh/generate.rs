@@ -4,7 +4,8 @@ use thiserror::Error;
 
 use super::polygon::{MAX_MIN_ANGLE, largest_triangle, polygon};
 use super::{Mesh, Pattern, disk, l_shape, rectangle};
-use crate::problem::{Domain, Number};
+use crate::problem::Domain;
+use crate::text::Number;
 
 /// More vertices than this are refused: the system of a mesh of this size needs about 64 GiB.
 pub(crate) const MAX_VERTICES: f64 = 5e7;

@@ -14,7 +14,7 @@ mod v4;
 
 pub use error::{GmshError, Place};
 
-use crate::problem::excerpt;
+use crate::text::excerpt;
 use elements::Elements;
 use nodes::Nodes;
 use scanner::{ByteOrder, Encoding, Scanner};

@@ -6,7 +6,7 @@ use spade::{AngleLimit, ConstrainedDelaunayTriangulation, Point2, RefinementPara
 
 use super::Mesh;
 use super::generate::{GenerateError, check_vertex_estimate};
-use crate::problem::ring_area;
+use crate::geometry::ring_area;
 
 /// Ruppert's algorithm ends for angles up to about 33 degrees; 30 is what it reaches on any input in practice.
 pub(super) const MAX_MIN_ANGLE: f64 = 30.0;

@@ -1,6 +1,7 @@
 //! Shape regularity of a mesh.
 
-use super::{Mesh, distance_sq, twice_signed_area};
+use super::Mesh;
+use crate::geometry::{distance_sq, twice_signed_area};
 
 /// How well the triangles are shaped: the constants of the estimates depend on it.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -20,11 +20,10 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Arc;
 
-pub use decoupled::Interface;
 pub use parameter::{CaseError, Parameter, Range};
 pub use solution::ExactSolution;
 
-use super::{excerpt, nearest};
+use crate::text::{excerpt, nearest};
 use decoupled::Decoupled;
 use parameter::{Values, listed};
 

@@ -3,7 +3,8 @@
 use std::fmt;
 use std::sync::Arc;
 
-use super::{Expression, Interface};
+use super::Expression;
+use crate::geometry::Interface;
 
 /// A real function of a point `(x, y)` of the plane: a load (force per area) or a height (length).
 ///

@@ -3,7 +3,9 @@
 use std::path::{Path, PathBuf};
 
 /// The way of the data.
-const LAYERS: [&str; 12] = [
+const LAYERS: [&str; 14] = [
+    "text",
+    "geometry",
     "problem",
     "mesh",
     "fem",

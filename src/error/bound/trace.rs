@@ -2,7 +2,8 @@
 
 use crate::discretization::Discretization;
 use crate::flux::WedgeFluxes;
-use crate::mesh::{Circle, Mesh, VertexKind, VertexTriangles, distance_sq};
+use crate::geometry::distance_sq;
+use crate::mesh::{Circle, Mesh, VertexKind, VertexTriangles};
 use crate::problem::{ContactProblem, Domain, Function};
 
 /// A boundary vertex lies on the circle up to this fraction of the radius: rounding of its coordinates.

@@ -20,7 +20,9 @@ fn some(random: &mut Random, triangles: usize) -> Vec<usize> {
 fn around(mesh: &Mesh, point: [f64; 2]) -> Vec<usize> {
     let is_in = |t: &usize| {
         let [a, b, c] = mesh.corners(*t);
-        [[a, b], [b, c], [c, a]].iter().all(|&[p, q]| crate::mesh::twice_signed_area([p, q, point]) >= 0.0)
+        [[a, b], [b, c], [c, a]]
+            .iter()
+            .all(|&[p, q]| crate::geometry::twice_signed_area([p, q, point]) >= 0.0)
     };
     (0..mesh.triangles().len()).filter(is_in).collect()
 }

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use super::MeshError;
 use super::boxes::{Bounds, BoxIndex};
-use crate::mesh::{distance_sq, twice_signed_area};
+use crate::geometry::{distance_sq, twice_signed_area};
 
 /// Two boundary edges from one vertex whose directions differ by less than this angle (radians) lie on each other.
 const MIN_ANGLE: f64 = 1e-10;

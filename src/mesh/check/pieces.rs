@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::MeshError;
 use super::boundary::{Boundary, BoundaryEdge};
 use super::boxes::{Bounds, BoxIndex};
-use crate::mesh::twice_signed_area;
+use crate::geometry::twice_signed_area;
 
 /// A piece is what is connected through vertices. Where the boundaries of two do not cross, one lies wholly in the other
 /// or wholly outside of it, so one vertex of each tells.

@@ -3,7 +3,7 @@
 use std::str::FromStr;
 
 use super::error::{GmshError, Place};
-use crate::problem::excerpt;
+use crate::text::excerpt;
 
 /// Order of the bytes of a binary number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,5 +1,7 @@
 //! Scan conversion: which pixels a triangle or a line covers.
 
+use crate::geometry::barycentric_gradients;
+
 /// Pixels on an edge belong to both triangles, so that rounding leaves no hole between them.
 const ON_EDGE: f64 = -1e-9;
 
@@ -53,18 +55,6 @@ pub(crate) fn line(
             }
         }
     }
-}
-
-/// The gradients of the three barycentric coordinates, `None` for a triangle without area.
-pub(crate) fn barycentric_gradients(corners: [[f64; 2]; 3]) -> Option<[[f64; 2]; 3]> {
-    let [a, b, c] = corners;
-    let twice_area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-    if !twice_area.is_normal() {
-        return None;
-    }
-    let opposite =
-        |from: [f64; 2], to: [f64; 2]| [(from[1] - to[1]) / twice_area, (to[0] - from[0]) / twice_area];
-    Some([opposite(b, c), opposite(c, a), opposite(a, b)])
 }
 
 /// The corner whose dual cell `D_a` holds the point with these barycentric coordinates.

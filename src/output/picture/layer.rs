@@ -6,6 +6,7 @@ use super::frame::Frame;
 use super::raster;
 use super::scene::{Scene, TOUCHING};
 use super::view::View;
+use crate::geometry::barycentric_gradients;
 
 /// Lines win over the surface they lie on, and membrane 1 over membrane 2 where they touch.
 const NEARER: f32 = 0.004;
@@ -63,7 +64,7 @@ impl Layer {
             let gaps = corners.map(|v| scene.levels(v)[0] - scene.levels(v)[1]);
             let points = places.map(|place| view.project(place));
             let flat = points.map(|[x, y, _]| self.fine([x, y]));
-            let Some(gradients) = raster::barycentric_gradients(flat) else { continue };
+            let Some(gradients) = barycentric_gradients(flat) else { continue };
             let steepness = [0, 1].map(|k| {
                 let slope = |axis: usize| (0..3).map(|i| gradients[i][axis] * places[i][k]).sum::<f64>();
                 let [across, down] = [slope(0), slope(1)];
@@ -184,7 +185,7 @@ fn brightness(scene: &Scene, view: &View, membrane: usize) -> Vec<f32> {
     let mut sums = vec![[0.0; 3]; scene.vertex_count()];
     for corners in scene.triangles() {
         let places = corners.map(|v| view.in_box(scene.place(v), scene.levels(v)[membrane]));
-        let Some(gradients) = raster::barycentric_gradients(places.map(|[s, t, _]| [s, t])) else { continue };
+        let Some(gradients) = barycentric_gradients(places.map(|[s, t, _]| [s, t])) else { continue };
         let slope = [0, 1].map(|axis| (0..3).map(|i| gradients[i][axis] * places[i][2]).sum::<f64>());
         let [a, b, c] = places;
         let area = ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])).abs();

@@ -3,9 +3,10 @@
 use std::sync::Arc;
 
 use super::Description;
-use super::decoupled::{Companion, Decoupled, Interface};
+use super::decoupled::{Companion, Decoupled};
 use super::jet::Jet;
 use super::parameter::{MU1, MU2, Parameter, Values};
+use crate::geometry::Interface;
 use crate::problem::Domain;
 
 pub(super) static DISK: Description = Description {

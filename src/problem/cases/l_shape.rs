@@ -4,9 +4,10 @@ use std::f64::consts::{FRAC_PI_4, TAU};
 use std::sync::Arc;
 
 use super::Description;
-use super::decoupled::{Companion, Decoupled, Interface};
+use super::decoupled::{Companion, Decoupled};
 use super::jet::Jet;
 use super::parameter::{MU1, MU2, Parameter};
+use crate::geometry::Interface;
 use crate::problem::Domain;
 
 /// The gap of case F is purely singular up to this radius ...

@@ -4,9 +4,10 @@ use std::sync::Arc;
 
 use super::CaseError;
 use super::Description;
-use super::decoupled::{Companion, Decoupled, Interface};
+use super::decoupled::{Companion, Decoupled};
 use super::jet::Jet;
 use super::parameter::{MU1, MU2, Parameter, Values};
+use crate::geometry::Interface;
 use crate::problem::Domain;
 
 const AMPLITUDE: Parameter = Parameter::any("c", 0.2, "height of membrane 2 in the middle");

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::problem::{Number, excerpt, nearest};
+use crate::text::{Number, excerpt, nearest};
 
 /// Why there is no such exact solution.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

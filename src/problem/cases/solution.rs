@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
-use super::decoupled::{Companion, Decoupled, Interface};
+use super::decoupled::{Companion, Decoupled};
 use super::jet::Jet;
+use crate::geometry::Interface;
 use crate::problem::{Domain, Function};
 
 /// The exact solution of a case, with the data of the problem that it solves.

@@ -2,7 +2,7 @@
 
 use super::ExpressionError;
 use super::program::Instruction;
-use crate::problem::excerpt;
+use crate::text::excerpt;
 
 /// How tightly an operator binds, loosest first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 use super::ExpressionError;
 use super::lexer::{Level, Lexeme, Lexer, Token};
 use super::program::{Builder, Instruction, Program};
-use crate::problem::nearest;
+use crate::text::nearest;
 
 /// How many arguments a function takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -8,8 +8,9 @@ use super::ErrorBound;
 use crate::discretization::Discretization;
 use crate::error::tests::solve;
 use crate::fem::DEGREE_4;
+use crate::geometry::distance_sq;
 use crate::mesh::samples::{irregular, square};
-use crate::mesh::{Mesh, SubTriangulation, VertexTriangles, distance_sq};
+use crate::mesh::{Mesh, SubTriangulation, VertexTriangles};
 use crate::problem::{ContactProblem, Domain, Function};
 
 /// Rounding of sums of some hundred terms of size one.

@@ -2,8 +2,9 @@
 
 use std::f64::consts::TAU;
 
+use crate::geometry::Interface;
 use crate::problem::Domain;
-use crate::problem::cases::{ExactSolution, Interface};
+use crate::problem::cases::ExactSolution;
 
 /// How far a point has to be from every interface and from the corner: a thousand steps of the differences.
 const CLEARANCE: f64 = 1e-2;

@@ -1,0 +1,7 @@
+//! Numbers and names in messages.
+
+mod names;
+mod number;
+
+pub(crate) use names::{excerpt, nearest};
+pub(crate) use number::Number;
