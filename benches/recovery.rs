@@ -4,7 +4,7 @@ mod common;
 
 use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
 use membrane_contact::action::{Action, certify};
-use membrane_contact::error::ErrorBound;
+use membrane_contact::estimate::ErrorBound;
 use membrane_contact::solver::{ActiveSet, ContactSolver, Multigrid, SolverOptions};
 use membrane_contact::study::comparison::square_problem;
 

@@ -18,7 +18,7 @@ pub mod qp;
 pub mod solver;
 pub mod action;
 pub mod flux;
-pub mod error;
+pub mod estimate;
 pub mod study;
 pub mod output;
 #[cfg(feature = "cli")]

@@ -12,7 +12,7 @@ use super::terminal::{fields, fixed, grouped, print};
 use super::watch::Watch;
 use crate::action::{ContactSolution, Rejected};
 use crate::discretization::Discretization;
-use crate::error::ErrorBound;
+use crate::estimate::ErrorBound;
 use crate::fem::element_loads;
 use crate::flux::{Reconstruction, Reconstructor};
 use crate::mesh::{DualMesh, SubTriangulation};

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::action::{ContactSolution, Rejected, Residuals};
 use crate::discretization::Discretization;
-use crate::error::{BoundParts, ErrorBound};
+use crate::estimate::{BoundParts, ErrorBound};
 use crate::solver::Statistics;
 
 /// The contents of `summary.json`, field by field. Other programs read the names.

@@ -7,7 +7,7 @@ use thiserror::Error;
 use super::prolongation::Fields;
 use crate::action::{ContactSolution, Rejected, certify};
 use crate::discretization::Discretization;
-use crate::error::{ErrorBound, MeasureError};
+use crate::estimate::{ErrorBound, MeasureError};
 use crate::problem::{ContactProblem, Domain};
 use crate::solver::{ContactSolver, SolverError, SolverOptions};
 

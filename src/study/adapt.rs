@@ -9,7 +9,7 @@ use super::prolongation::Fields;
 use super::{StudyError, mark};
 use crate::action::{ContactSolution, certify};
 use crate::discretization::Discretization;
-use crate::error::{ErrorBound, energy_error, residual_indicators};
+use crate::estimate::{ErrorBound, energy_error, residual_indicators};
 use crate::mesh::{Bisection, Mesh};
 use crate::problem::{ContactProblem, Domain, ExactSolution};
 use crate::solver::{Candidate, ContactSolver, SolverOptions, StartingPoint, Statistics};
@@ -56,7 +56,7 @@ pub struct AdaptiveLevel {
     pub bound: f64,
     /// The bound relative to the exact solution's energy norm; empty when the bound is too large to know that.
     pub relative_bound: Option<f64>,
-    /// The parts of the bound, see [`BoundParts`](crate::error::BoundParts).
+    /// The parts of the bound, see [`BoundParts`](crate::estimate::BoundParts).
     pub flux: f64,
     /// Likewise.
     pub oscillation: f64,

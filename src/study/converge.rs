@@ -9,7 +9,7 @@ use super::accuracy::{AccuracyError, Bounded, Tolerance, solve_bounded};
 use super::prolongation::Fields;
 use crate::action::Rejected;
 use crate::discretization::{Discretization, DiscretizationError};
-use crate::error::{ErrorNorms, MeasureError};
+use crate::estimate::{ErrorNorms, MeasureError};
 use crate::mesh::{MeshError, MeshFamily};
 use crate::problem::{ContactProblem, ExactSolution, ProblemError};
 use crate::solver::{ContactSolver, SolverError, SolverOptions};

@@ -14,7 +14,7 @@ const LAYERS: [&str; 14] = [
     "solver",
     "action",
     "flux",
-    "error",
+    "estimate",
     "study",
     "output",
     "cli",

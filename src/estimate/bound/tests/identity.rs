@@ -2,7 +2,7 @@
 
 use super::{bound, cut_rule};
 use crate::discretization::Discretization;
-use crate::error::tests::{exact, mesh, problem, solve};
+use crate::estimate::tests::{exact, mesh, problem, solve};
 use crate::fem::{element_loads, gradient};
 use crate::flux::{Flux, Reconstruction, Reconstructor};
 use crate::mesh::{Mesh, SubTriangulation, VertexKind};

@@ -2,7 +2,7 @@
 
 use super::{ErrorBound, bound, energy_error};
 use crate::discretization::Discretization;
-use crate::error::tests::{exact, mesh, problem, solve};
+use crate::estimate::tests::{exact, mesh, problem, solve};
 use crate::mesh::samples::{Random, irregular};
 use crate::mesh::{Mesh, disk, polygon};
 use crate::problem::{Case, ContactProblem, Domain, ExactSolution, Function};

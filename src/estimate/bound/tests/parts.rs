@@ -6,7 +6,7 @@ use super::super::friedrichs;
 use super::super::trace::Trace;
 use super::ErrorBound;
 use crate::discretization::Discretization;
-use crate::error::tests::solve;
+use crate::estimate::tests::solve;
 use crate::fem::DEGREE_4;
 use crate::geometry::distance_sq;
 use crate::mesh::samples::{irregular, square};

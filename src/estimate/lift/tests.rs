@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use super::*;
 use crate::action::{ContactSolution, certify};
 use crate::discretization::principal_submatrix;
-use crate::error::norms::cut_rule;
+use crate::estimate::norms::cut_rule;
 use crate::fem::stiffness;
 use crate::mesh::samples::{irregular, square};
 use crate::mesh::{VertexKind, l_shape};

@@ -54,8 +54,8 @@ pub fn residual_indicators(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::error::ErrorNorms;
-    use crate::error::tests::{exact, mesh, problem, solve};
+    use crate::estimate::ErrorNorms;
+    use crate::estimate::tests::{exact, mesh, problem, solve};
     use crate::mesh::Mesh;
     use crate::problem::{Case, ContactProblem};
 

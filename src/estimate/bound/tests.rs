@@ -7,8 +7,8 @@ mod rounding;
 
 use super::ErrorBound;
 use crate::discretization::Discretization;
-use crate::error::energy_error as measure;
-use crate::error::norms::cut_rule;
+use crate::estimate::energy_error as measure;
+use crate::estimate::norms::cut_rule;
 use crate::problem::{ContactProblem, Domain, ExactSolution};
 
 /// The bound on the mesh's polygon, or on the disk.
