@@ -15,6 +15,7 @@ pub mod mesh;
 pub mod fem;
 pub mod discretization;
 pub mod qp;
+mod multigrid;
 pub mod solver;
 pub mod action;
 pub mod flux;

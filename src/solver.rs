@@ -2,9 +2,7 @@
 
 mod active_set;
 mod auto;
-pub(crate) mod cholesky;
 mod decoupled;
-mod hierarchy;
 mod multigrid;
 mod polish;
 mod qp_solver;
@@ -21,9 +19,9 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::discretization::Discretization;
+use crate::multigrid::cholesky::NotFactored;
 use crate::qp::{Answer, BackendError, Status};
 use crate::text::Number;
-use cholesky::NotFactored;
 
 /// Anything that solves (3.4): a [`QpBackend`](crate::qp::QpBackend) by way of [`QpSolver`], or a method of its own.
 pub trait ContactSolver {

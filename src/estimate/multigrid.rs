@@ -6,7 +6,7 @@ use super::MeasureError;
 use crate::discretization::Discretization;
 use crate::fem::stiffness;
 use crate::mesh::{Mesh, Refinement, SubTriangulation, VertexKind};
-use crate::solver::cholesky::Cholesky;
+use crate::multigrid::cholesky::Cholesky;
 
 /// An iteration that adds no more than this fraction to the squared norm is the last: a V-cycle leaves a tenth or less
 /// of the error, so what is missing then is smaller still.

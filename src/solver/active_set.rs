@@ -9,10 +9,10 @@ pub(super) use obstacle::{Limits, Obstacle, guess};
 
 use std::time::Instant;
 
-use super::cholesky::NotFactored;
 use super::decoupled::Decoupled;
 use super::{Candidate, ContactSolver, SolverError, SolverOptions, Statistics};
 use crate::discretization::Discretization;
+use crate::multigrid::cholesky::NotFactored;
 use crate::qp::Status;
 
 /// The limit of steps when none is given. A cold start needs about as many as there are layers of vertices between the

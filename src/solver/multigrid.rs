@@ -1,24 +1,16 @@
 //! Multigrid on the decoupled problem.
 
-mod correction;
-mod direct;
-mod half;
-mod sweep;
-mod truncation;
 #[cfg(test)]
 mod tests;
 
 use std::time::Instant;
 
 use super::decoupled::Decoupled;
-use super::hierarchy::Hierarchy;
 use super::{Candidate, ContactSolver, SolverError, SolverOptions, StartingPoint, Statistics};
 use crate::discretization::Discretization;
+use crate::multigrid::half::{HalfProblem, Limits, MAX_CYCLES, solve};
+use crate::multigrid::hierarchy::Hierarchy;
 use crate::qp::Status;
-use half::{HalfProblem, Limits, solve};
-
-/// The limit of cycles when none is given. Ten are enough on meshes of ordinary quality.
-const MAX_CYCLES: usize = 200;
 
 /// Both halves may miss the tolerance by as much: their residuals add up in those of the membranes.
 const SHARE: f64 = 0.5;

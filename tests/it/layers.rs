@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// The way of the data.
-const LAYERS: [&str; 14] = [
+const LAYERS: [&str; 15] = [
     "text",
     "geometry",
     "problem",
@@ -11,6 +11,7 @@ const LAYERS: [&str; 14] = [
     "fem",
     "discretization",
     "qp",
+    "multigrid",
     "solver",
     "action",
     "flux",

@@ -10,8 +10,8 @@ use crate::estimate::norms::cut_rule;
 use crate::fem::stiffness;
 use crate::mesh::samples::{irregular, square};
 use crate::mesh::{VertexKind, l_shape};
+use crate::multigrid::cholesky::Cholesky;
 use crate::problem::{Case, ContactProblem, ExactSolution};
-use crate::solver::cholesky::Cholesky;
 use crate::solver::{ActiveSet, ContactSolver, SolverOptions};
 
 /// The iteration stops when it adds `1e-12` of the square; sums of some thousand terms round less.

@@ -4,9 +4,9 @@ use sprs::CsMat;
 
 use super::obstacle::{Limits, Obstacle};
 use crate::discretization::Discretization;
-use crate::solver::cholesky::NotFactored;
+use crate::multigrid::cholesky::NotFactored;
+use crate::multigrid::hierarchy::{Hierarchy, Level};
 use crate::solver::decoupled::Decoupled;
-use crate::solver::hierarchy::{Hierarchy, Level};
 
 /// Projected Gauss-Seidel sweeps over a gap that comes from the next coarser level. They save a factorisation or two on each level
 /// where membranes part with a jump of the action.

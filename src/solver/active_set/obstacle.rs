@@ -7,8 +7,8 @@ use std::time::Instant;
 use sprs::CsMat;
 
 use crate::discretization::Discretization;
+use crate::multigrid::cholesky::{Cholesky, NotFactored};
 use crate::qp::Status;
-use crate::solver::cholesky::{Cholesky, NotFactored};
 
 /// A multiplier, or a gap times its diagonal entry, below zero by less than this fraction of the terms that cancel in its row
 /// is a zero, rounded. Measured in the row alone: at the tip of a mesh refined towards a point, gaps of any size are real.

@@ -6,11 +6,11 @@ use super::*;
 use crate::action::certify;
 use crate::mesh::samples::{Random, irregular};
 use crate::mesh::{Mesh, MeshSize, Pattern, disk, generate, l_shape, rectangle};
+use crate::multigrid::hierarchy::{Hierarchy, LONGEST, Values};
+use crate::multigrid::sweep::Bounded;
+use crate::multigrid::truncation::Truncation;
 use crate::problem::{Case, ContactProblem, Domain, Function};
 use crate::solver::ActiveSet;
-use crate::solver::hierarchy::{Hierarchy, LONGEST, Values};
-use sweep::Bounded;
-use truncation::Truncation;
 
 const TOLERANCE: f64 = 1e-9;
 

@@ -4,10 +4,10 @@
 //! Kornhuber, J. Comput. Math. 27 (2009) 1). Only rows near the rim of the contact set differ from what is known, so a change
 //! of the set costs as much as it is long.
 
-use crate::solver::hierarchy::{Hierarchy, RowSum, Transfer, Values};
+use crate::multigrid::hierarchy::{Hierarchy, RowSum, Transfer, Values};
 
 /// The truncated matrices below a finest level.
-pub(super) struct Truncation<'h> {
+pub(crate) struct Truncation<'h> {
     hierarchy: &'h Hierarchy,
     /// For each level the matrix that holds now.
     values: Vec<Values>,
@@ -17,7 +17,7 @@ pub(super) struct Truncation<'h> {
 
 impl<'h> Truncation<'h> {
     /// Without matrices yet: call [`reset`](Self::reset) next.
-    pub(super) fn new(hierarchy: &'h Hierarchy) -> Self {
+    pub(crate) fn new(hierarchy: &'h Hierarchy) -> Self {
         let sizes = || hierarchy.levels()[..hierarchy.finest()].iter().map(|level| level.pattern.rows());
         Self {
             hierarchy,
@@ -28,19 +28,19 @@ impl<'h> Truncation<'h> {
     }
 
     /// The matrix of a coarser level.
-    pub(super) fn values(&self, level: usize) -> &Values {
+    pub(crate) fn values(&self, level: usize) -> &Values {
         &self.values[level]
     }
 
     /// Forgets what was truncated below `finest`.
-    pub(super) fn reset(&mut self, finest: usize) {
+    pub(crate) fn reset(&mut self, finest: usize) {
         for (values, level) in self.values[..finest].iter_mut().zip(self.hierarchy.levels()) {
             values.clone_from(&level.values);
         }
     }
 
     /// Follows the contact set of the level `finest`, which has `changed`. Returns whether that has reached level 0.
-    pub(super) fn update(&mut self, finest: usize, frozen: &[bool], changed: &[u32]) -> bool {
+    pub(crate) fn update(&mut self, finest: usize, frozen: &[bool], changed: &[u32]) -> bool {
         let top = &self.hierarchy.levels()[finest];
         // An entry of the matrix is cut off with its row or its column. Neighbours in contact have no entries left.
         let neighbours = changed.iter().flat_map(|&i| top.pattern.row(i as usize));

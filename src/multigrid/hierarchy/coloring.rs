@@ -7,7 +7,7 @@ use std::ops::Range;
 
 /// Where the rows of each window and colour lie.
 #[derive(Debug, Clone, Default)]
-pub(in crate::solver) struct Coloring {
+pub(crate) struct Coloring {
     colors: usize,
     /// The first row of each window and colour, the colours of a window together; at the end the number of rows.
     start: Vec<u32>,
@@ -17,7 +17,7 @@ impl Coloring {
     /// Colours the rows greedily, in windows of `bandwidth` rows. Returns also the rows in their new order.
     ///
     /// `coupled(i)` are the columns that row `i` is coupled to; none is further away than `bandwidth`.
-    pub(super) fn new<I: Iterator<Item = usize>>(
+    pub(crate) fn new<I: Iterator<Item = usize>>(
         rows: usize,
         bandwidth: usize,
         coupled: impl Fn(usize) -> I,
@@ -41,29 +41,29 @@ impl Coloring {
         (Self { colors, start }, order)
     }
 
-    pub(in crate::solver) fn colors(&self) -> usize {
+    pub(crate) fn colors(&self) -> usize {
         self.colors
     }
 
-    pub(in crate::solver) fn windows(&self) -> usize {
+    pub(crate) fn windows(&self) -> usize {
         (self.start.len() - 1) / self.colors
     }
 
     /// The rows of a colour in a window.
-    pub(in crate::solver) fn rows(&self, window: usize, color: usize) -> Range<usize> {
+    pub(crate) fn rows(&self, window: usize, color: usize) -> Range<usize> {
         let at = window * self.colors + color;
         self.start[at] as usize..self.start[at + 1] as usize
     }
 
     /// All rows of a window.
-    pub(in crate::solver) fn window(&self, window: usize) -> Range<usize> {
+    pub(crate) fn window(&self, window: usize) -> Range<usize> {
         self.start[window * self.colors] as usize..self.start[(window + 1) * self.colors] as usize
     }
 
     /// Runs the stages over all windows, each at the distance of one window behind the one before it: what it reads is
     /// finished by then, and still in the cache.
     #[inline(always)]
-    pub(in crate::solver) fn pipeline(&self, stages: usize, mut run: impl FnMut(usize, usize)) {
+    pub(crate) fn pipeline(&self, stages: usize, mut run: impl FnMut(usize, usize)) {
         let windows = self.windows();
         for step in 0..(windows + stages).saturating_sub(1) {
             for stage in step.saturating_sub(windows - 1)..stages.min(step + 1) {

@@ -7,13 +7,13 @@ use std::sync::Arc;
 const NEAR: f64 = 4.0;
 
 /// Whether neighbours are near each other in a numbering of this bandwidth.
-pub(super) fn is_banded(vertices: usize, bandwidth: usize) -> bool {
+pub(crate) fn is_banded(vertices: usize, bandwidth: usize) -> bool {
     bandwidth as f64 <= NEAR * (vertices as f64).sqrt()
 }
 
 /// The vertices of each mesh of an ancestry in a banded order, from the coarsest mesh to the finest: layer by layer on the
 /// coarsest, whose `edges` are given, and midpoints between their parents on the others.
-pub(super) fn banded_orders(vertices: usize, edges: &[[u32; 2]], ancestry: &[Arc<Parents>]) -> Vec<Vec<u32>> {
+pub(crate) fn banded_orders(vertices: usize, edges: &[[u32; 2]], ancestry: &[Arc<Parents>]) -> Vec<Vec<u32>> {
     let mut orders = vec![layers(vertices, edges)];
     for parents in ancestry {
         let coarse = &orders[orders.len() - 1];

@@ -13,11 +13,11 @@ mod transfer;
 #[cfg(test)]
 mod tests;
 
-pub(super) use coloring::Coloring;
-pub(super) use galerkin::RowSum;
-pub(super) use matrix::{Pattern, Values};
-pub(super) use runs::{LONGEST, Runs};
-pub(super) use transfer::Transfer;
+pub(crate) use coloring::Coloring;
+pub(crate) use galerkin::RowSum;
+pub(crate) use matrix::{Pattern, Values};
+pub(crate) use runs::{LONGEST, Runs};
+pub(crate) use transfer::Transfer;
 
 use std::sync::Arc;
 
@@ -45,7 +45,7 @@ const SLOW_COARSENING: f64 = 0.9;
 
 /// The stiffness matrix on a hierarchy of spaces, from the coarsest to that of the mesh. Level 0 repeats level 1: there
 /// systems are solved directly.
-pub(super) struct Hierarchy {
+pub(crate) struct Hierarchy {
     levels: Vec<Level>,
     /// The vertex of the mesh to which each row of the finest level belongs.
     vertex: Vec<u32>,
@@ -54,24 +54,24 @@ pub(super) struct Hierarchy {
 /// One space. Rows belong to the vertices, in the numbering of the level; those of held vertices (on the boundary, or in no
 /// triangle) are empty.
 #[derive(Clone)]
-pub(super) struct Level {
-    pub(super) pattern: Pattern,
-    pub(super) values: Values,
-    pub(super) coloring: Coloring,
-    pub(super) runs: Runs,
+pub(crate) struct Level {
+    pub(crate) pattern: Pattern,
+    pub(crate) values: Values,
+    pub(crate) coloring: Coloring,
+    pub(crate) runs: Runs,
     /// From the level below; that of level 0 has no rows.
-    pub(super) transfer: Transfer,
+    pub(crate) transfer: Transfer,
 }
 
 impl Hierarchy {
     /// Makes the levels of a discretization.
-    pub(super) fn new(d: &Discretization) -> Self {
+    pub(crate) fn new(d: &Discretization) -> Self {
         Self::over(d, d.mesh().ancestry())
     }
 
     /// Likewise, but all levels are algebraic: on stretched triangles coarser meshes are no good, because they are coarser also
     /// along the long sides, where neighbours are hardly coupled.
-    pub(super) fn algebraic(d: &Discretization) -> Self {
+    pub(crate) fn algebraic(d: &Discretization) -> Self {
         Self::over(d, &[])
     }
 
@@ -113,27 +113,27 @@ impl Hierarchy {
         Self { levels: finest_first, vertex }
     }
 
-    pub(super) fn levels(&self) -> &[Level] {
+    pub(crate) fn levels(&self) -> &[Level] {
         &self.levels
     }
 
     /// The number of the finest level.
-    pub(super) fn finest(&self) -> usize {
+    pub(crate) fn finest(&self) -> usize {
         self.levels.len() - 1
     }
 
     /// The vertex of the mesh to which each row of the finest level belongs.
-    pub(super) fn vertex(&self) -> &[u32] {
+    pub(crate) fn vertex(&self) -> &[u32] {
         &self.vertex
     }
 
     /// From a vector over the vertices of the mesh to one over the rows of the finest level.
-    pub(super) fn to_rows(&self, over_vertices: impl Fn(usize) -> f64 + Sync) -> Vec<f64> {
+    pub(crate) fn to_rows(&self, over_vertices: impl Fn(usize) -> f64 + Sync) -> Vec<f64> {
         self.vertex.par_iter().with_min_len(BLOCK).map(|&a| over_vertices(a as usize)).collect()
     }
 
     /// And back.
-    pub(super) fn to_vertices(&self, over_rows: &[f64]) -> Vec<f64> {
+    pub(crate) fn to_vertices(&self, over_rows: &[f64]) -> Vec<f64> {
         let mut values = vec![0.0; self.vertex.len()];
         for (&a, &value) in self.vertex.iter().zip(over_rows) {
             values[a as usize] = value;
@@ -142,7 +142,7 @@ impl Hierarchy {
     }
 
     /// The functionals `b - K_IB g` of all levels, for `b` and `g` over the rows of the finest one; and `g` on all levels.
-    pub(super) fn lifted(&self, load: Vec<f64>, height: Vec<f64>) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
+    pub(crate) fn lifted(&self, load: Vec<f64>, height: Vec<f64>) -> (Vec<Vec<f64>>, Vec<Vec<f64>>) {
         let (mut loads, mut heights) = (vec![load], vec![height]);
         for level in self.levels[1..].iter().rev() {
             let [load, height] = [&loads, &heights].map(|finest_first| &finest_first[finest_first.len() - 1]);
@@ -220,12 +220,12 @@ impl Level {
 
     /// Whether a vertex is on the boundary, or in no triangle.
     #[inline(always)]
-    pub(super) fn is_held(&self, i: usize) -> bool {
+    pub(crate) fn is_held(&self, i: usize) -> bool {
         self.values.diagonal[i] == 0.0
     }
 
     /// Vertices that are not held.
-    pub(super) fn unknowns(&self) -> usize {
+    pub(crate) fn unknowns(&self) -> usize {
         self.values.diagonal.iter().filter(|&&diagonal| diagonal != 0.0).count()
     }
 

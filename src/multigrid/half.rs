@@ -8,12 +8,14 @@
 
 use std::time::Instant;
 
-use super::MAX_CYCLES;
 use super::correction::CoarseLevels;
 use super::sweep::{Bounded, Found, Iterate};
+use crate::multigrid::cholesky::NotFactored;
+use crate::multigrid::hierarchy::Hierarchy;
 use crate::qp::Status;
-use crate::solver::cholesky::NotFactored;
-use crate::solver::hierarchy::Hierarchy;
+
+/// The limit of cycles when none is given. Ten are enough on meshes of ordinary quality.
+pub(crate) const MAX_CYCLES: usize = 200;
 
 /// Cycles on a coarser level: its error is then well below that of its discretisation.
 const COARSE_CYCLES: usize = 2;
@@ -27,40 +29,40 @@ const ENERGY_ROUNDING: f64 = 1e-12;
 
 /// `K x - y = b`, `x >= lower`, `y >= 0`, `y'(x - lower) = 0` at the vertices that are not held. Vectors are over the rows of
 /// the finest level.
-pub(super) struct HalfProblem {
-    pub(super) load: Vec<f64>,
+pub(crate) struct HalfProblem {
+    pub(crate) load: Vec<f64>,
     /// `x` at the vertices on the boundary.
-    pub(super) height: Vec<f64>,
+    pub(crate) height: Vec<f64>,
     /// Zero for the gap; minus infinity for the sum, which has no obstacle.
-    pub(super) lower: f64,
+    pub(crate) lower: f64,
     /// What makes of a residual a fraction of the tolerance.
-    pub(super) weight: Vec<f64>,
+    pub(crate) weight: Vec<f64>,
     /// A guess to start from in place of nested iteration.
-    pub(super) start: Option<Vec<f64>>,
+    pub(crate) start: Option<Vec<f64>>,
 }
 
 /// When to stop although the tolerance is not reached.
 #[derive(Clone, Copy)]
-pub(super) struct Limits {
+pub(crate) struct Limits {
     /// Cycles on the finest level.
-    pub(super) cycles: usize,
-    pub(super) deadline: Option<Instant>,
+    pub(crate) cycles: usize,
+    pub(crate) deadline: Option<Instant>,
 }
 
 /// The last iterate, over the rows of the finest level.
-pub(super) struct HalfSolution {
-    pub(super) x: Vec<f64>,
+pub(crate) struct HalfSolution {
+    pub(crate) x: Vec<f64>,
     /// `K x - b` where `x` is at its bound, zero elsewhere.
-    pub(super) y: Vec<f64>,
-    pub(super) status: Status,
+    pub(crate) y: Vec<f64>,
+    pub(crate) status: Status,
     /// Cycles on each level, from the coarsest.
-    pub(super) cycles: Vec<usize>,
+    pub(crate) cycles: Vec<usize>,
     /// The energies of the iterates on the finest level.
-    pub(super) energies: Vec<f64>,
+    pub(crate) energies: Vec<f64>,
 }
 
 /// Solves, from the coarsest level to the finest.
-pub(super) fn solve(
+pub(crate) fn solve(
     hierarchy: &Hierarchy,
     problem: HalfProblem,
     limits: &Limits,

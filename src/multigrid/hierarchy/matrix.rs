@@ -9,55 +9,55 @@ use crate::discretization::Discretization;
 use crate::mesh::VertexKind;
 
 /// Rows that are made together.
-pub(super) const BLOCK: usize = 8192;
+pub(crate) const BLOCK: usize = 8192;
 
 /// Where the off-diagonal entries of a matrix stand: compressed rows with 32-bit indices.
 #[derive(Debug, Clone, Default)]
-pub(in crate::solver) struct Pattern {
+pub(crate) struct Pattern {
     start: Vec<u32>,
     column: Vec<u32>,
 }
 
 /// The entries of a matrix: of the diagonal, and off it in the order of the pattern.
 #[derive(Debug, Clone, Default)]
-pub(in crate::solver) struct Values {
-    pub(in crate::solver) off_diagonal: Vec<f64>,
-    pub(in crate::solver) diagonal: Vec<f64>,
+pub(crate) struct Values {
+    pub(crate) off_diagonal: Vec<f64>,
+    pub(crate) diagonal: Vec<f64>,
     /// The reciprocals of the diagonal; zero for the empty rows of vertices that are held.
-    pub(in crate::solver) inverse: Vec<f64>,
+    pub(crate) inverse: Vec<f64>,
     /// Whether the rows of each run share a stencil.
-    pub(super) shared: Vec<bool>,
+    pub(crate) shared: Vec<bool>,
 }
 
 /// Consecutive rows of a matrix.
 #[derive(Debug)]
-pub(super) struct Rows {
+pub(crate) struct Rows {
     /// Where each row ends among the entries.
-    pub(super) ends: Vec<usize>,
-    pub(super) column: Vec<u32>,
-    pub(super) off_diagonal: Vec<f64>,
-    pub(super) diagonal: Vec<f64>,
+    pub(crate) ends: Vec<usize>,
+    pub(crate) column: Vec<u32>,
+    pub(crate) off_diagonal: Vec<f64>,
+    pub(crate) diagonal: Vec<f64>,
 }
 
 impl Pattern {
     /// The entries of row `i`, as a range.
     #[inline(always)]
-    pub(in crate::solver) fn range(&self, i: usize) -> std::ops::Range<usize> {
+    pub(crate) fn range(&self, i: usize) -> std::ops::Range<usize> {
         self.start[i] as usize..self.start[i + 1] as usize
     }
 
     /// The columns of row `i`.
     #[inline(always)]
-    pub(in crate::solver) fn row(&self, i: usize) -> &[u32] {
+    pub(crate) fn row(&self, i: usize) -> &[u32] {
         &self.column[self.range(i)]
     }
 
-    pub(in crate::solver) fn rows(&self) -> usize {
+    pub(crate) fn rows(&self) -> usize {
         self.start.len() - 1
     }
 
     /// The largest distance of a row and a column.
-    pub(super) fn bandwidth(&self) -> usize {
+    pub(crate) fn bandwidth(&self) -> usize {
         let reach = |i: usize| self.row(i).iter().map(|&j| i.abs_diff(j as usize)).max().unwrap_or(0);
         (0..self.rows()).into_par_iter().with_min_len(BLOCK).map(reach).max().unwrap_or(0)
     }
@@ -66,7 +66,7 @@ impl Pattern {
 impl Values {
     /// `sum_j a_ij x_j` over the columns off the diagonal.
     #[inline(always)]
-    pub(in crate::solver) fn off_diagonal_product(&self, pattern: &Pattern, i: usize, x: &[f64]) -> f64 {
+    pub(crate) fn off_diagonal_product(&self, pattern: &Pattern, i: usize, x: &[f64]) -> f64 {
         let range = pattern.range(i);
         let (mut columns, mut values) = (&pattern.column[range.clone()], &self.off_diagonal[range]);
         let mut sum = 0.0;
@@ -86,7 +86,7 @@ impl Values {
 
     /// Likewise for the rows of a run.
     #[inline(always)]
-    pub(in crate::solver) fn off_diagonal_products<'p>(
+    pub(crate) fn off_diagonal_products<'p>(
         &self,
         (pattern, runs): (&Pattern, &Runs),
         run: usize,
@@ -130,12 +130,12 @@ impl Values {
     }
 
     /// The rows of a run have no common stencil any more.
-    pub(in crate::solver) fn part(&mut self, run: usize) {
+    pub(crate) fn part(&mut self, run: usize) {
         self.shared[run] = false;
     }
 
     /// Replaces the row `i` by a sum whose columns are in the pattern.
-    pub(in crate::solver) fn set_row(&mut self, pattern: &Pattern, i: usize, sum: &RowSum) {
+    pub(crate) fn set_row(&mut self, pattern: &Pattern, i: usize, sum: &RowSum) {
         for (&j, value) in pattern.row(i).iter().zip(&mut self.off_diagonal[pattern.range(i)]) {
             *value = sum.at(j as usize);
         }
@@ -146,7 +146,7 @@ impl Values {
 
 impl Rows {
     /// Room for so many rows of a triangulation, whose vertices have six neighbours on average.
-    pub(super) fn with_capacity(rows: usize) -> Self {
+    pub(crate) fn with_capacity(rows: usize) -> Self {
         Self {
             ends: Vec::with_capacity(rows),
             column: Vec::with_capacity(6 * rows),
@@ -157,7 +157,7 @@ impl Rows {
 }
 
 /// Puts blocks of consecutive rows together, all of them at once.
-pub(super) fn assemble(blocks: Vec<Rows>) -> (Pattern, Values) {
+pub(crate) fn assemble(blocks: Vec<Rows>) -> (Pattern, Values) {
     let count = |of: fn(&Rows) -> usize| blocks.iter().map(of).sum::<usize>();
     let (rows, entries) = (count(|block| block.ends.len()), count(|block| block.column.len()));
     let mut pattern = Pattern { start: vec![0; rows + 1], column: vec![0; entries] };
@@ -202,7 +202,7 @@ fn reciprocal(value: f64) -> f64 {
 }
 
 /// The rows and columns of a matrix in another order: row `order[i]` becomes row `i`, column `j` becomes `position[j]`.
-pub(super) fn reordered(
+pub(crate) fn reordered(
     (pattern, values): (&Pattern, &Values),
     order: &[u32],
     position: &[u32],
@@ -222,7 +222,7 @@ pub(super) fn reordered(
 }
 
 /// `K` with empty rows for held vertices, the vertices in this order.
-pub(super) fn compact_stiffness(d: &Discretization, order: &[u32]) -> (Pattern, Values) {
+pub(crate) fn compact_stiffness(d: &Discretization, order: &[u32]) -> (Pattern, Values) {
     let k = d.stiffness();
     let kind = d.mesh().kind();
     let position = inverse(order);

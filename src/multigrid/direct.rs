@@ -2,22 +2,22 @@
 
 use sprs::CsMat;
 
-use crate::solver::cholesky::{Cholesky, NotFactored};
-use crate::solver::hierarchy::{Level, Values};
+use crate::multigrid::cholesky::{Cholesky, NotFactored};
+use crate::multigrid::hierarchy::{Level, Values};
 
 /// Truncated hat functions can depend on each other, and the matrix is singular then. With its diagonal raised by this
 /// fraction it has a factor; the correction still lowers the energy, and is the same but for this fraction.
 const SHIFT: f64 = 1e-10;
 
 /// A Cholesky factor that follows the truncated matrix of a level.
-pub(super) struct Direct {
+pub(crate) struct Direct {
     cholesky: Cholesky,
     /// Where each stored entry comes from: among the entries off the diagonal, and after them the diagonal.
     source: Vec<usize>,
 }
 
 impl Direct {
-    pub(super) fn new(level: &Level) -> Result<Self, NotFactored> {
+    pub(crate) fn new(level: &Level) -> Result<Self, NotFactored> {
         let rows = level.pattern.rows();
         let entries = level.values.off_diagonal.len();
         let (mut start, mut columns, mut source) = (vec![0], Vec::new(), Vec::new());
@@ -40,7 +40,7 @@ impl Direct {
     }
 
     /// Follows a change of the matrix. Rows that are empty are solved for as zero.
-    pub(super) fn refactor(&mut self, values: &Values) -> Result<(), NotFactored> {
+    pub(crate) fn refactor(&mut self, values: &Values) -> Result<(), NotFactored> {
         let entries = values.off_diagonal.len();
         let value = |&at: &usize| match at.checked_sub(entries) {
             None => values.off_diagonal[at],
@@ -50,7 +50,7 @@ impl Direct {
         self.cholesky.refactor(self.source.iter().map(value))
     }
 
-    pub(super) fn solve(&self, b: &[f64]) -> Result<Vec<f64>, NotFactored> {
+    pub(crate) fn solve(&self, b: &[f64]) -> Result<Vec<f64>, NotFactored> {
         self.cholesky.solve(b)
     }
 }

@@ -22,7 +22,7 @@ enum Kind {
 
 /// The transfer from a coarser level, whose vertices are some of those of this one. Vertices that are held stay, so that
 /// boundary values are known on every level.
-pub(super) fn coarsened(pattern: &Pattern, values: &Values) -> Transfer {
+pub(crate) fn coarsened(pattern: &Pattern, values: &Values) -> Transfer {
     let rows = pattern.rows();
     let kind = split(pattern, values);
     let mut number = vec![0; rows];

@@ -11,14 +11,14 @@ use super::coloring::Coloring;
 use super::matrix::{Pattern, Values};
 
 /// The most rows of a run: their products stay in the nearest cache, and rows that change spoil no more than these.
-pub(in crate::solver) const LONGEST: usize = 32;
+pub(crate) const LONGEST: usize = 32;
 
 /// Fewer rows are worked on one by one.
 const SHORTEST: usize = 8;
 
 /// The rows of each window and colour in runs. Whether the rows of a run share a stencil is known to the [`Values`].
 #[derive(Debug, Clone, Default)]
-pub(in crate::solver) struct Runs {
+pub(crate) struct Runs {
     /// The first row of each; at the end the number of rows.
     start: Vec<u32>,
     /// The first run of each window and colour; at the end the number of runs.
@@ -29,7 +29,7 @@ pub(in crate::solver) struct Runs {
 impl Runs {
     /// Finds the runs of a matrix; and whether the rows of each share a stencil, where entries may differ by a fraction
     /// `tolerance` of the diagonal.
-    pub(super) fn new(
+    pub(crate) fn new(
         coloring: &Coloring,
         pattern: &Pattern,
         values: &Values,
@@ -58,19 +58,19 @@ impl Runs {
 
     /// The runs of a colour in a window.
     #[inline(always)]
-    pub(in crate::solver) fn of(&self, window: usize, color: usize) -> Range<usize> {
+    pub(crate) fn of(&self, window: usize, color: usize) -> Range<usize> {
         let at = window * self.colors + color;
         self.first[at] as usize..self.first[at + 1] as usize
     }
 
     /// The rows of a run.
     #[inline(always)]
-    pub(in crate::solver) fn rows(&self, run: usize) -> Range<usize> {
+    pub(crate) fn rows(&self, run: usize) -> Range<usize> {
         self.start[run] as usize..self.start[run + 1] as usize
     }
 
     /// The run of a row.
-    pub(in crate::solver) fn with_row(&self, i: usize) -> usize {
+    pub(crate) fn with_row(&self, i: usize) -> usize {
         self.start.partition_point(|&start| start as usize <= i) - 1
     }
 }

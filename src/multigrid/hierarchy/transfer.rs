@@ -9,7 +9,7 @@ const BLOCK: usize = 4096;
 
 /// The prolongation `P` from a coarser level, by rows, and its transpose.
 #[derive(Debug, Clone, Default)]
-pub(in crate::solver) struct Transfer {
+pub(crate) struct Transfer {
     parents: Parents,
     children: Rows,
     /// The rows of the finer level that are the coarse vertices themselves.
@@ -123,7 +123,7 @@ impl Transfer {
 
     /// From the rows of the prolongation: where each ends, and their entries. `same_vertex` are the rows of the finer level
     /// that are the coarse vertices themselves.
-    pub(super) fn weighted(
+    pub(crate) fn weighted(
         same_vertex: Vec<u32>,
         start: Vec<u32>,
         index: Vec<u32>,
@@ -133,7 +133,7 @@ impl Transfer {
     }
 
     /// Each row takes the mean of its values at two vertices, or at one that is named twice.
-    pub(super) fn from_midpoints(coarse_rows: usize, ends: Vec<[u32; 2]>) -> Self {
+    pub(crate) fn from_midpoints(coarse_rows: usize, ends: Vec<[u32; 2]>) -> Self {
         let mut same_vertex = vec![0; coarse_rows];
         for (i, &[a, b]) in ends.iter().enumerate() {
             if a == b {
@@ -144,12 +144,12 @@ impl Transfer {
     }
 
     /// The level is its own coarser level.
-    pub(super) fn identity(rows: usize) -> Self {
+    pub(crate) fn identity(rows: usize) -> Self {
         Self::from_midpoints(rows, (0..rows as u32).map(|a| [a, a]).collect())
     }
 
     /// The same with the coarse vertices in another order: number `order[k]` becomes `k`.
-    pub(super) fn with_coarse_order(mut self, order: &[u32], position: &[u32]) -> Self {
+    pub(crate) fn with_coarse_order(mut self, order: &[u32], position: &[u32]) -> Self {
         let place = |a: &mut u32| *a = position[*a as usize];
         match &mut self.parents {
             Parents::Edges(ends) => {
@@ -164,12 +164,12 @@ impl Transfer {
 
     /// `(A, P_iA)`: what the row `i` of the prolongation takes from the coarser level.
     #[inline(always)]
-    pub(in crate::solver) fn for_each_parent(&self, i: usize, take: impl FnMut(usize, f64)) {
+    pub(crate) fn for_each_parent(&self, i: usize, take: impl FnMut(usize, f64)) {
         self.parents.for_each(i, take);
     }
 
     /// `(i, P_iA)`: the values of the hat function of the coarse vertex `A` on the finer level.
-    pub(in crate::solver) fn children(&self, a: usize) -> impl Iterator<Item = (usize, f64)> {
+    pub(crate) fn children(&self, a: usize) -> impl Iterator<Item = (usize, f64)> {
         let weight = move |at: usize, i: u32| match self.children.weight.get(at) {
             Some(&weight) => weight,
             None if i == self.same_vertex[a] => 1.0,
@@ -180,17 +180,17 @@ impl Transfer {
     }
 
     /// The row of the finer level that is the coarse vertex itself.
-    pub(super) fn same_vertex(&self, a: usize) -> usize {
+    pub(crate) fn same_vertex(&self, a: usize) -> usize {
         self.same_vertex[a] as usize
     }
 
-    pub(super) fn coarse_rows(&self) -> usize {
+    pub(crate) fn coarse_rows(&self) -> usize {
         self.same_vertex.len()
     }
 
     /// `(P c)_i`.
     #[inline(always)]
-    pub(in crate::solver) fn prolong(&self, i: usize, coarse: &[f64]) -> f64 {
+    pub(crate) fn prolong(&self, i: usize, coarse: &[f64]) -> f64 {
         match &self.parents {
             Parents::Edges(ends) => {
                 let [a, b] = ends[i];
@@ -202,7 +202,7 @@ impl Transfer {
 
     /// Adds `P' r` of the single entry `r_i` to the functional on the coarser level.
     #[inline(always)]
-    pub(in crate::solver) fn spread(&self, i: usize, r: f64, coarse: &mut [f64]) {
+    pub(crate) fn spread(&self, i: usize, r: f64, coarse: &mut [f64]) {
         match &self.parents {
             Parents::Edges(ends) => {
                 let [a, b] = ends[i];
@@ -214,12 +214,12 @@ impl Transfer {
     }
 
     /// The values of a function at the coarse vertices.
-    pub(super) fn inject(&self, fine: &[f64]) -> Vec<f64> {
+    pub(crate) fn inject(&self, fine: &[f64]) -> Vec<f64> {
         self.same_vertex.iter().map(|&i| fine[i as usize]).collect()
     }
 
     /// `P' f`.
-    pub(in crate::solver) fn restrict(&self, fine: &[f64]) -> Vec<f64> {
+    pub(crate) fn restrict(&self, fine: &[f64]) -> Vec<f64> {
         let at = |a: usize| self.children(a).map(|(i, weight)| weight * fine[i]).sum();
         (0..self.coarse_rows()).into_par_iter().with_min_len(BLOCK).map(at).collect()
     }

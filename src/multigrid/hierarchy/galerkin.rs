@@ -9,15 +9,15 @@ use super::transfer::Transfer;
 const BLOCKS: usize = 4;
 
 /// The row of a coarse vertex is gathered here: which columns it has, and their entries.
-pub(in crate::solver) struct RowSum {
+pub(crate) struct RowSum {
     /// Where a column stands among those of this row, plus one; zero elsewhere.
     place: Vec<u32>,
-    pub(in crate::solver) column: Vec<u32>,
-    pub(in crate::solver) value: Vec<f64>,
+    pub(crate) column: Vec<u32>,
+    pub(crate) value: Vec<f64>,
 }
 
 impl RowSum {
-    pub(in crate::solver) fn new(columns: usize) -> Self {
+    pub(crate) fn new(columns: usize) -> Self {
         Self { place: vec![0; columns], column: Vec::new(), value: Vec::new() }
     }
 
@@ -42,7 +42,7 @@ impl RowSum {
     }
 
     /// The entry of a column; zero where there is none.
-    pub(in crate::solver) fn at(&self, column: usize) -> f64 {
+    pub(crate) fn at(&self, column: usize) -> f64 {
         match self.place[column] {
             0 => 0.0,
             place => self.value[place as usize - 1],
@@ -50,7 +50,7 @@ impl RowSum {
     }
 
     /// `sum_{i,j} P_iA a_ij P_jB` for one `A` and all `B`, over those `i`, `j` that are not `frozen`.
-    pub(in crate::solver) fn gather(
+    pub(crate) fn gather(
         &mut self,
         (pattern, values): (&Pattern, &Values),
         transfer: &Transfer,
@@ -76,7 +76,7 @@ impl RowSum {
 }
 
 /// `P' A P`, with empty rows for the coarse vertices that are held. Parallel; every sum has one order.
-pub(super) fn galerkin(
+pub(crate) fn galerkin(
     fine: (&Pattern, &Values),
     transfer: &Transfer,
     held: impl Fn(usize) -> bool + Sync,

@@ -5,7 +5,7 @@
 
 use std::ops::Range;
 
-use crate::solver::hierarchy::{LONGEST, Level, Values};
+use crate::multigrid::hierarchy::{LONGEST, Level, Values};
 
 /// Sweeps between two corrections on the finest level.
 const SWEEPS: usize = 2;
@@ -19,38 +19,38 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// The problem on a level: minimise `1/2 x'A x - b'x` subject to `x >= lower`.
 #[derive(Clone, Copy)]
-pub(super) struct Bounded<'a> {
-    pub(super) level: &'a Level,
-    pub(super) b: &'a [f64],
+pub(crate) struct Bounded<'a> {
+    pub(crate) level: &'a Level,
+    pub(crate) b: &'a [f64],
     /// Zero for the gap, minus infinity without an obstacle.
-    pub(super) lower: f64,
+    pub(crate) lower: f64,
     /// What makes of a residual a fraction of the tolerance.
-    pub(super) weight: &'a [f64],
+    pub(crate) weight: &'a [f64],
     /// The largest weighted residual that is as good as none.
-    pub(super) tolerance: f64,
+    pub(crate) tolerance: f64,
 }
 
 /// What a sweep over the finest level of a cycle has found.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Found {
+pub(crate) struct Found {
     /// The largest weighted residual of the optimality conditions.
-    pub(super) violation: f64,
+    pub(crate) violation: f64,
     /// `1/2 x'A x - b'x`.
-    pub(super) energy: f64,
+    pub(crate) energy: f64,
     /// How often the correction was cut off at the bound.
-    pub(super) cut: usize,
+    pub(crate) cut: usize,
 }
 
 /// Where a sweep over the finest level of a cycle leaves its results.
-pub(super) struct Iterate<'a> {
-    pub(super) x: &'a mut [f64],
+pub(crate) struct Iterate<'a> {
+    pub(crate) x: &'a mut [f64],
     /// Whether `x` is pressed against its bound. At the bound without a force, it may leave it by the next correction: a wide
     /// region of such vertices would take a sweep for each layer.
-    pub(super) frozen: &'a mut [bool],
+    pub(crate) frozen: &'a mut [bool],
     /// The vertices where that has changed.
-    pub(super) changed: &'a mut Vec<u32>,
+    pub(crate) changed: &'a mut Vec<u32>,
     /// `P' r` of the residual where `x` is not frozen.
-    pub(super) coarse: &'a mut [f64],
+    pub(crate) coarse: &'a mut [f64],
 }
 
 impl Iterate<'_> {
@@ -66,7 +66,7 @@ impl Iterate<'_> {
 impl Bounded<'_> {
     /// `x = max(lower, old + P c)` where `old` is not frozen, projected Gauss-Seidel sweeps through the colours, the
     /// residual and its restriction. (Rows of the last colour have no residual then, unless they are at the bound.)
-    pub(super) fn correct_and_relax(
+    pub(crate) fn correct_and_relax(
         &self,
         old: &[f64],
         correction: Option<&[f64]>,
@@ -184,7 +184,7 @@ impl Bounded<'_> {
     }
 
     /// Zero at held vertices and nowhere below the bound.
-    pub(super) fn feasible(&self, mut x: Vec<f64>) -> Vec<f64> {
+    pub(crate) fn feasible(&self, mut x: Vec<f64>) -> Vec<f64> {
         for (i, x) in x.iter_mut().enumerate() {
             *x = if self.level.is_held(i) { 0.0 } else { larger(*x, self.lower) };
         }
@@ -192,14 +192,14 @@ impl Bounded<'_> {
     }
 
     /// `max(0, A x - b)` where `x` is at its bound, zero elsewhere.
-    pub(super) fn multiplier(&self, x: &[f64]) -> Vec<f64> {
+    pub(crate) fn multiplier(&self, x: &[f64]) -> Vec<f64> {
         let at = |i: usize| if x[i] <= self.lower { larger(-self.residual(i, x), 0.0) } else { 0.0 };
         (0..x.len()).map(at).collect()
     }
 
     /// By how much the energy is larger after a step than before it, as exactly as the step is known: the step times the mean
     /// of the residuals.
-    pub(super) fn energy_change(&self, before: &[f64], after: &[f64]) -> f64 {
+    pub(crate) fn energy_change(&self, before: &[f64], after: &[f64]) -> f64 {
         let mut change = 0.0;
         for i in (0..after.len()).filter(|&i| before[i] != after[i]) {
             change -= 0.5 * (after[i] - before[i]) * (self.residual(i, before) + self.residual(i, after));
@@ -208,7 +208,7 @@ impl Bounded<'_> {
     }
 
     /// Adds the part of the correction, cut off at the bound, that lowers the energy most: `t d`, `0 <= t <= 1`. Leaves `d`.
-    pub(super) fn line_search(&self, x: &mut [f64], correction: &[f64], frozen: &[bool], d: &mut [f64]) {
+    pub(crate) fn line_search(&self, x: &mut [f64], correction: &[f64], frozen: &[bool], d: &mut [f64]) {
         for (i, (d, &x)) in d.iter_mut().zip(&*x).enumerate() {
             *d = self.corrected(i, x, correction, frozen[i]).0 - x;
         }
@@ -226,14 +226,14 @@ impl Bounded<'_> {
 
     /// `(b - A x)_i`.
     #[inline(always)]
-    pub(super) fn residual(&self, i: usize, x: &[f64]) -> f64 {
+    pub(crate) fn residual(&self, i: usize, x: &[f64]) -> f64 {
         let Level { pattern, values, .. } = self.level;
         self.b[i] - values.diagonal[i] * x[i] - values.off_diagonal_product(pattern, i, x)
     }
 }
 
 /// On a coarser level: Gauss-Seidel sweeps from zero for `A x = b`, the residual and its restriction.
-pub(super) fn descend(level: &Level, values: &Values, b: &[f64], x: &mut [f64], coarse: &mut [f64]) {
+pub(crate) fn descend(level: &Level, values: &Values, b: &[f64], x: &mut [f64], coarse: &mut [f64]) {
     let coloring = &level.coloring;
     let colors = coloring.colors();
     let relaxations = COARSE_SWEEPS * colors;
@@ -254,7 +254,7 @@ pub(super) fn descend(level: &Level, values: &Values, b: &[f64], x: &mut [f64], 
 
 /// On a coarser level: the correction from the level below, Gauss-Seidel sweeps, and for another correction the residual
 /// and its restriction.
-pub(super) fn ascend(
+pub(crate) fn ascend(
     level: &Level,
     values: &Values,
     b: &[f64],

@@ -3,8 +3,8 @@
 use super::direct::Direct;
 use super::sweep::{ascend, descend};
 use super::truncation::Truncation;
-use crate::solver::cholesky::NotFactored;
-use crate::solver::hierarchy::{Hierarchy, Values};
+use crate::multigrid::cholesky::NotFactored;
+use crate::multigrid::hierarchy::{Hierarchy, Values};
 
 /// With truncated hat functions, levels that are this far below the finest one get two corrections. Such functions do not
 /// fit smooth ones that vanish along the rim of the contact set; in a V-cycle the errors of all levels add up, and smooth ones
@@ -19,7 +19,7 @@ const UNSETTLED_TWICE: usize = 2;
 const EXACT: usize = 1;
 
 /// The coarser levels with their vectors.
-pub(super) struct CoarseLevels<'h> {
+pub(crate) struct CoarseLevels<'h> {
     hierarchy: &'h Hierarchy,
     matrices: Matrices<'h>,
     direct: Direct,
@@ -46,7 +46,7 @@ impl Matrices<'_> {
 
 impl<'h> CoarseLevels<'h> {
     /// With an `obstacle` they can be truncated.
-    pub(super) fn new(hierarchy: &'h Hierarchy, obstacle: bool) -> Result<Self, NotFactored> {
+    pub(crate) fn new(hierarchy: &'h Hierarchy, obstacle: bool) -> Result<Self, NotFactored> {
         let coarser = || hierarchy.levels()[..hierarchy.finest()].iter();
         let zeros = || coarser().map(|level| vec![0.0; level.pattern.rows()]).collect();
         let matrices = match obstacle {
@@ -58,7 +58,7 @@ impl<'h> CoarseLevels<'h> {
     }
 
     /// Another level becomes the finest one, with nothing in contact yet.
-    pub(super) fn restart(&mut self, finest: usize) -> Result<(), NotFactored> {
+    pub(crate) fn restart(&mut self, finest: usize) -> Result<(), NotFactored> {
         if let Matrices::Truncated(truncation) = &mut self.matrices {
             truncation.reset(finest);
             self.direct.refactor(truncation.values(0))?;
@@ -67,18 +67,18 @@ impl<'h> CoarseLevels<'h> {
     }
 
     /// The correction that [`solve`](Self::solve) has found.
-    pub(super) fn correction(&self, finest: usize) -> &[f64] {
+    pub(crate) fn correction(&self, finest: usize) -> &[f64] {
         &self.x[finest - 1]
     }
 
     /// That correction, and the functional on the level below `finest`, to be filled by restriction.
-    pub(super) fn exchange(&mut self, finest: usize) -> (&[f64], &mut [f64]) {
+    pub(crate) fn exchange(&mut self, finest: usize) -> (&[f64], &mut [f64]) {
         (&self.x[finest - 1], &mut self.b[finest - 1])
     }
 
     /// One cycle below the level `finest` for its functional, truncated where the vertices are `frozen`; those that have
     /// changed since the last time are named.
-    pub(super) fn solve(
+    pub(crate) fn solve(
         &mut self,
         finest: usize,
         frozen: &[bool],
