@@ -11,6 +11,7 @@
 mod text;
 pub mod geometry;
 pub mod problem;
+pub mod formats;
 pub mod mesh;
 pub mod fem;
 pub mod discretization;

@@ -9,7 +9,6 @@ mod dual;
 mod edges;
 mod family;
 mod generate;
-pub mod gmsh;
 mod grade;
 mod midpoints;
 mod polygon;

@@ -9,7 +9,6 @@ mod mesh_picture;
 pub mod picture;
 mod rates_picture;
 mod summary;
-mod vtk;
 mod vtu;
 
 pub use checkpoint::{read_checkpoint, write_checkpoint};

@@ -15,7 +15,6 @@ mod clarabel;
 mod contact;
 mod export;
 mod kkt;
-mod npz;
 #[cfg(feature = "osqp")]
 mod osqp;
 mod problem;
@@ -29,5 +28,3 @@ pub use contact::contact_qp;
 pub use export::{QpPart, write_matrix_market, write_npz, write_qps};
 pub use kkt::KktResiduals;
 pub use problem::{QpError, QpProblem};
-
-pub(crate) use npz::{NpzWriter, read_vector};

@@ -5,8 +5,8 @@ use std::path::Path;
 
 use thiserror::Error;
 
-use super::gmsh::{GmshError, GmshTriangulation, parse};
 use super::{Mesh, MeshError};
+use crate::formats::gmsh::{GmshError, GmshTriangulation, parse};
 
 /// Why a mesh file cannot be used. The messages do not repeat the file's name.
 #[derive(Debug, Error)]

@@ -4,7 +4,7 @@ use std::io::{self, Read, Seek, Write};
 
 use zip::ZipArchive;
 
-use crate::qp::{NpzWriter, read_vector};
+use crate::formats::npz::{NpzWriter, read_vector};
 use crate::solver::Statistics;
 use crate::study::Checkpoint;
 

@@ -2,8 +2,8 @@
 
 use std::io::{self, Write};
 
-use super::vtk::{Cells, DataArray, Location, VTK_POLYGON, write_grid};
 use crate::action::ContactSolution;
+use crate::formats::vtk::{Cells, DataArray, Location, VTK_POLYGON, write_grid};
 use crate::mesh::DualMesh;
 
 /// Writes `dual.vtu`: the cells `D_a` of the dual mesh as polygons, with cell data `lambda` (the piecewise constant
@@ -39,10 +39,10 @@ pub fn write_dual_vtu(dual: &DualMesh, solution: &ContactSolution, out: impl Wri
 
 #[cfg(test)]
 mod tests {
-    use super::super::vtk::samples::{floats, integers, read_array};
     use super::*;
     use crate::action::certify;
     use crate::discretization::Discretization;
+    use crate::formats::vtk::samples::{floats, integers, read_array};
     use crate::mesh::{Mesh, SubTriangulation, VertexKind, samples};
     use crate::problem::ContactProblem;
     use crate::solver::{ActiveSet, ContactSolver, SolverOptions};

@@ -2,9 +2,9 @@
 
 use std::io::{self, Write};
 
-use super::vtk::{Cells, DataArray, Location, VTK_TRIANGLE, write_grid};
 use crate::action::ContactSolution;
 use crate::flux::Flux;
+use crate::formats::vtk::{Cells, DataArray, Location, VTK_TRIANGLE, write_grid};
 use crate::mesh::SubTriangulation;
 
 /// Writes `flux.vtu`: the triangles of `S_h` with cell data `t1`, `t2` (the fluxes of both membranes at the barycentres,
@@ -34,12 +34,12 @@ pub fn write_flux_vtu(
 
 #[cfg(test)]
 mod tests {
-    use super::super::vtk::samples::{floats, read_array};
     use super::*;
     use crate::action::certify;
     use crate::discretization::Discretization;
     use crate::fem::element_loads;
     use crate::flux::{Reconstruction, Reconstructor};
+    use crate::formats::vtk::samples::{floats, read_array};
     use crate::mesh::{Pattern, rectangle};
     use crate::problem::ContactProblem;
     use crate::solver::{ActiveSet, ContactSolver, SolverOptions};

@@ -2,9 +2,9 @@
 
 use std::io::{self, Write};
 
-use super::vtk::{Cells, DataArray, Location, VTK_TRIANGLE, write_grid};
 use crate::action::ContactSolution;
 use crate::estimate::ErrorBound;
+use crate::formats::vtk::{Cells, DataArray, Location, VTK_TRIANGLE, write_grid};
 use crate::mesh::Mesh;
 
 /// Writes `solution.vtu`: the mesh, with point data `u1`, `u2`, `gap`, `lambda` (zero on the boundary) and `contact` (0 or

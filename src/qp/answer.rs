@@ -7,7 +7,7 @@ use thiserror::Error;
 use zip::ZipArchive;
 use zip::result::ZipError;
 
-use super::npz::open_array;
+use crate::formats::npz::open_array;
 
 /// A point and its multipliers, from elsewhere: finite numbers in the right number, and no more is known of them.
 #[derive(Debug, Clone, PartialEq)]

@@ -5,8 +5,9 @@ use std::io::{self, Seek, Write};
 use sprs::CsMat;
 
 use super::QpProblem;
-use super::npz::NpzWriter;
 use crate::discretization::Discretization;
+use crate::formats::matrix_market::{write_array, write_coordinates};
+use crate::formats::npz::NpzWriter;
 
 /// Writes the program and the mesh behind it as a numpy archive, which scipy loads without further help.
 ///
@@ -56,25 +57,6 @@ fn strict_upper(upper: &CsMat<f64>) -> CsMat<f64> {
         triplets.add_triplet(row, column, *value);
     }
     triplets.to_csc()
-}
-
-/// Writes a matrix in MatrixMarket coordinate form; of a symmetric one, given by its upper triangle, the lower triangle,
-/// as that format wants it.
-fn write_coordinates(matrix: &CsMat<f64>, is_symmetric: bool, out: &mut impl Write) -> io::Result<()> {
-    let symmetry = if is_symmetric { "symmetric" } else { "general" };
-    writeln!(out, "%%MatrixMarket matrix coordinate real {symmetry}")?;
-    writeln!(out, "{} {} {}", matrix.rows(), matrix.cols(), matrix.nnz())?;
-    for (value, (row, column)) in matrix.iter() {
-        let (row, column) = if is_symmetric { (column, row) } else { (row, column) };
-        writeln!(out, "{} {} {value:e}", row + 1, column + 1)?;
-    }
-    Ok(())
-}
-
-fn write_array(values: &[f64], out: &mut impl Write) -> io::Result<()> {
-    writeln!(out, "%%MatrixMarket matrix array real general")?;
-    writeln!(out, "{} 1", values.len())?;
-    values.iter().try_for_each(|value| writeln!(out, "{value:e}"))
 }
 
 /// A part of the program that has a MatrixMarket file of its own.

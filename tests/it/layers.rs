@@ -3,10 +3,11 @@
 use std::path::{Path, PathBuf};
 
 /// The way of the data.
-const LAYERS: [&str; 15] = [
+const LAYERS: [&str; 16] = [
     "text",
     "geometry",
     "problem",
+    "formats",
     "mesh",
     "fem",
     "discretization",

@@ -11,11 +11,11 @@ use flate2::write::ZlibEncoder;
 const BLOCK: usize = 1 << 16;
 
 /// VTK's numbers for the shapes of cells.
-pub(super) const VTK_TRIANGLE: u8 = 5;
-pub(super) const VTK_POLYGON: u8 = 7;
+pub(crate) const VTK_TRIANGLE: u8 = 5;
+pub(crate) const VTK_POLYGON: u8 = 7;
 
 /// A named array of numbers, one for each point or cell.
-pub(super) struct DataArray {
+pub(crate) struct DataArray {
     name: &'static str,
     kind: &'static str,
     components: usize,
@@ -23,7 +23,7 @@ pub(super) struct DataArray {
 }
 
 impl DataArray {
-    pub(super) fn floats(name: &'static str, values: impl IntoIterator<Item = f64>) -> Self {
+    pub(crate) fn floats(name: &'static str, values: impl IntoIterator<Item = f64>) -> Self {
         Self {
             name,
             kind: "Float64",
@@ -33,22 +33,22 @@ impl DataArray {
     }
 
     /// Vectors of the plane, as VTK's three components.
-    pub(super) fn vectors(name: &'static str, values: impl IntoIterator<Item = [f64; 2]>) -> Self {
+    pub(crate) fn vectors(name: &'static str, values: impl IntoIterator<Item = [f64; 2]>) -> Self {
         let components = values.into_iter().flat_map(|[x, y]| [x, y, 0.0]);
         Self { components: 3, ..Self::floats(name, components) }
     }
 
-    pub(super) fn integers(name: &'static str, values: impl IntoIterator<Item = usize>) -> Self {
+    pub(crate) fn integers(name: &'static str, values: impl IntoIterator<Item = usize>) -> Self {
         Self { name, kind: "Int64", components: 1, bytes: values.into_iter().flat_map(integer).collect() }
     }
 
-    pub(super) fn flags(name: &'static str, values: impl IntoIterator<Item = bool>) -> Self {
+    pub(crate) fn flags(name: &'static str, values: impl IntoIterator<Item = bool>) -> Self {
         Self { name, kind: "UInt8", components: 1, bytes: values.into_iter().map(u8::from).collect() }
     }
 }
 
 /// The cells of a grid, all of one shape.
-pub(super) struct Cells {
+pub(crate) struct Cells {
     shape: u8,
     count: usize,
     corners: Vec<u8>,
@@ -57,7 +57,7 @@ pub(super) struct Cells {
 
 impl Cells {
     /// Cells of VTK's `shape`, each given by the numbers of its corners.
-    pub(super) fn new(shape: u8, cells: impl Iterator<Item: IntoIterator<Item = usize>>) -> Self {
+    pub(crate) fn new(shape: u8, cells: impl Iterator<Item: IntoIterator<Item = usize>>) -> Self {
         let (mut count, mut end) = (0, 0);
         let (mut corners, mut ends) = (Vec::new(), Vec::new());
         for cell in cells {
@@ -74,13 +74,13 @@ impl Cells {
 
 /// What the arrays of a grid belong to.
 #[derive(Clone, Copy)]
-pub(super) enum Location {
+pub(crate) enum Location {
     Points,
     Cells,
 }
 
 /// Writes a grid with its arrays; `lambda` is the one that a viewer shows first.
-pub(super) fn write_grid(
+pub(crate) fn write_grid(
     mut out: impl Write,
     points: &[[f64; 2]],
     cells: &Cells,
@@ -143,11 +143,11 @@ fn integer(number: usize) -> [u8; 8] {
 
 /// Reading back, for the tests of all writers.
 #[cfg(test)]
-pub(super) mod samples {
+pub(crate) mod samples {
     use super::*;
 
     /// The bytes of the array of this name in a file, decompressed.
-    pub(in crate::output) fn read_array(file: &str, name: &str) -> Option<Vec<u8>> {
+    pub(crate) fn read_array(file: &str, name: &str) -> Option<Vec<u8>> {
         let mut lines = file.lines();
         lines.find(|line| line.starts_with("<DataArray") && line.contains(&format!(r#" Name="{name}""#)))?;
         let data = lines.next()?;
@@ -166,12 +166,12 @@ pub(super) mod samples {
     }
 
     /// The floating-point numbers of an array.
-    pub(in crate::output) fn floats(bytes: &[u8]) -> Vec<f64> {
+    pub(crate) fn floats(bytes: &[u8]) -> Vec<f64> {
         bytes.chunks_exact(8).map(|b| f64::from_le_bytes(b.try_into().expect("eight bytes"))).collect()
     }
 
     /// The integers of an array.
-    pub(in crate::output) fn integers(bytes: &[u8]) -> Vec<i64> {
+    pub(crate) fn integers(bytes: &[u8]) -> Vec<i64> {
         bytes.chunks_exact(8).map(|b| i64::from_le_bytes(b.try_into().expect("eight bytes"))).collect()
     }
 }
