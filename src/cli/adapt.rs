@@ -18,10 +18,8 @@ use super::watch::Watch;
 use super::{CaseFile, Failure};
 use crate::discretization::Discretization;
 use crate::mesh::{DualMesh, MeshError, SubTriangulation};
-use crate::output::{
-    MeshPicture, RatesPicture, Seconds, Series, Summary, read_checkpoint, render_rates, render_triangulation,
-    write_checkpoint,
-};
+use crate::output::{Seconds, Summary, read_checkpoint, write_checkpoint};
+use crate::pictures::{MeshPicture, RatesPicture, Series, render_rates, render_triangulation};
 use crate::study::{AdaptiveLevel, AdaptiveStudy, StudyError, exponent};
 
 const TABLE: &str = "adapt.csv";

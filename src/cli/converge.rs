@@ -12,7 +12,7 @@ use super::progress::Progress;
 use super::setup::{Setup, make_folder, options, solver, write_file};
 use super::terminal::{grouped, print};
 use super::watch::Watch;
-use crate::output::{RatesPicture, Series, render_rates};
+use crate::pictures::{RatesPicture, Series, render_rates};
 use crate::study::{ConvergenceStudy, LevelErrors, MEASURES, fitted_rate, markdown, rate};
 
 const LEVELS: &str = "summary.csv";

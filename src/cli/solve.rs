@@ -16,10 +16,9 @@ use crate::estimate::ErrorBound;
 use crate::fem::element_loads;
 use crate::flux::{Reconstruction, Reconstructor};
 use crate::mesh::{DualMesh, SubTriangulation};
-use crate::output::picture::{Picture, render};
-use crate::output::{
-    MeshPicture, Seconds, Summary, remove, render_mesh, write_dual_vtu, write_flux_vtu, write_vtu,
-};
+use crate::output::{Seconds, Summary, remove, write_dual_vtu, write_flux_vtu, write_vtu};
+use crate::pictures::membranes::{Picture, render};
+use crate::pictures::{MeshPicture, render_mesh};
 use crate::qp::Status;
 use crate::solver::{PolishReport, Statistics};
 use crate::study::{AccuracyError, Bounded, solve_bounded};

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// The way of the data.
-const LAYERS: [&str; 16] = [
+const LAYERS: [&str; 17] = [
     "text",
     "geometry",
     "problem",
@@ -19,6 +19,7 @@ const LAYERS: [&str; 16] = [
     "estimate",
     "study",
     "output",
+    "pictures",
     "cli",
 ];
 

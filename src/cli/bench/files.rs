@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::cli::Failure;
 use crate::cli::setup::write_file;
-use crate::output::{Times, TimesPicture, render_times};
+use crate::pictures::{Times, TimesPicture, render_times};
 use crate::study::comparison::{Curve, ORIGIN, Row, curves, markdown};
 
 pub(super) const ROWS: &str = "bench.csv";

@@ -8,11 +8,9 @@ use membrane_contact::discretization::Discretization;
 use membrane_contact::fem::element_loads;
 use membrane_contact::flux::{FluxDefects, Reconstruction, Reconstructor};
 use membrane_contact::mesh::{DualMesh, SubTriangulation};
-use membrane_contact::output::picture::{Picture, render};
-use membrane_contact::output::{
-    MeshPicture, Seconds, Summary, render_mesh, render_triangulation, write_dual_vtu, write_flux_vtu,
-    write_vtu,
-};
+use membrane_contact::output::{Seconds, Summary, write_dual_vtu, write_flux_vtu, write_vtu};
+use membrane_contact::pictures::membranes::{Picture, render};
+use membrane_contact::pictures::{MeshPicture, render_mesh, render_triangulation};
 use membrane_contact::qp::{
     QpPart, QpProblem, contact_qp, read_answer, write_matrix_market, write_npz, write_qps,
 };

@@ -2,9 +2,9 @@
 
 use super::curve::Curve;
 use super::{MARKER, Plot, SIZE, color, marker};
-use crate::output::drawing::canvas::{Anchor, Canvas};
-use crate::output::drawing::color::{INK, PAPER, mix};
-use crate::output::drawing::frame::{NORMAL, SMALL};
+use crate::pictures::drawing::canvas::{Anchor, Canvas};
+use crate::pictures::drawing::color::{INK, PAPER, mix};
+use crate::pictures::drawing::frame::{NORMAL, SMALL};
 
 /// Names are cut off at this width.
 const LONGEST: f64 = 560.0;

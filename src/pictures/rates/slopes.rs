@@ -3,10 +3,10 @@
 use super::Plot;
 use super::curve::Curve;
 use super::labels::spread;
-use crate::output::drawing::canvas::{Anchor, Canvas};
-use crate::output::drawing::color::INK;
-use crate::output::drawing::frame::SMALL;
-use crate::output::drawing::log_axis::LogAxis;
+use crate::pictures::drawing::canvas::{Anchor, Canvas};
+use crate::pictures::drawing::color::INK;
+use crate::pictures::drawing::frame::SMALL;
+use crate::pictures::drawing::log_axis::LogAxis;
 
 /// The width of the rays as part of the plot.
 const WIDTH: f64 = 0.2;

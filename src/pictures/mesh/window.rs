@@ -1,7 +1,7 @@
 //! A part of the plane, drawn to scale.
 
 use crate::mesh::{Mesh, VertexKind};
-use crate::output::drawing::axis::Axis;
+use crate::pictures::drawing::axis::Axis;
 
 /// Pixels around the domain, so that its boundary is drawn in full width.
 const PAD: f64 = 14.0;

@@ -2,7 +2,7 @@ use super::axis::Axis;
 use super::canvas::{Anchor, Canvas, FINE};
 use super::color::{self, INK};
 use super::*;
-use crate::output::drawing::samples::Image;
+use crate::pictures::drawing::samples::Image;
 
 /// Rounding of a handful of operations on numbers of order one.
 const ROUNDING: f64 = 1e-12;

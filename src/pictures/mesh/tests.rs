@@ -1,6 +1,6 @@
 use super::*;
 use crate::mesh::{Pattern, SubTriangulation, rectangle, samples};
-use crate::output::drawing::samples::Image;
+use crate::pictures::drawing::samples::Image;
 
 /// Rounding of a handful of operations on pixels.
 const ROUNDING: f64 = 1e-9;

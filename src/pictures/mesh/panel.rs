@@ -2,8 +2,8 @@
 
 use super::MeshPicture;
 use super::window::Window;
-use crate::output::drawing::canvas::Canvas;
-use crate::output::drawing::color::{DUAL, DUAL_CELL, DUAL_CONTACT, INK, TRIANGULATION};
+use crate::pictures::drawing::canvas::Canvas;
+use crate::pictures::drawing::color::{DUAL, DUAL_CELL, DUAL_CONTACT, INK, TRIANGULATION};
 
 /// Lines of triangles and cells with a shorter or longer side of fewer pixels would run together: they are shown by their
 /// tint only.

@@ -1,8 +1,8 @@
 use super::labels::spread;
 use super::slopes::fraction;
 use super::*;
-use crate::output::drawing::color;
-use crate::output::drawing::samples::Image;
+use crate::pictures::drawing::color;
+use crate::pictures::drawing::samples::Image;
 
 /// Rounding of a handful of operations on numbers of order one to a thousand.
 const ROUNDING: f64 = 1e-9;

@@ -1,7 +1,7 @@
 //! Markers that are told apart by their shape alone.
 
-use crate::output::drawing::canvas::Canvas;
-use crate::output::drawing::color::Rgb;
+use crate::pictures::drawing::canvas::Canvas;
+use crate::pictures::drawing::color::Rgb;
 
 /// The number of shapes.
 pub(super) const KINDS: usize = 7;

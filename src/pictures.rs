@@ -1,0 +1,9 @@
+//! Pictures of solutions, meshes and rates.
+
+mod drawing;
+pub mod membranes;
+mod mesh;
+mod rates;
+
+pub use mesh::{MeshPicture, MeshPictureError, render_mesh, render_triangulation};
+pub use rates::{RatesPicture, RatesPictureError, Series, Times, TimesPicture, render_rates, render_times};
