@@ -1,44 +1,30 @@
 //! The triangulation `T_h` of the domain: checked construction, generators, the Gmsh reader, refinement.
 
-mod adjacency;
-mod ancestry;
-mod bisect;
 mod check;
-mod circle;
 mod dual;
-mod edges;
-mod family;
 mod generate;
-mod grade;
-mod midpoints;
-mod polygon;
-mod quality;
 mod read;
 mod refine;
 #[cfg(test)]
 pub(crate) mod samples;
-mod structured;
+mod topology;
 
 use std::sync::Arc;
 
 use crate::geometry::{distance_sq, twice_signed_area};
 
-pub use ancestry::Parents;
-pub use bisect::Bisection;
-pub use check::MeshError;
+pub use check::{MeshError, MeshQuality};
 pub use dual::{DualMesh, SubTriangulation};
-pub use family::MeshFamily;
-pub use generate::{GenerateError, MeshSize, estimated_vertices, generate};
-pub use polygon::polygon;
-pub use quality::MeshQuality;
+pub use generate::{
+    GenerateError, MeshSize, Pattern, disk, estimated_vertices, generate, l_shape, polygon, rectangle,
+};
 pub use read::ReadError;
-pub use refine::Refinement;
-pub use structured::{Pattern, disk, l_shape, rectangle};
+pub use refine::{Bisection, MeshFamily, Parents, Refinement};
 
-pub(crate) use adjacency::{HalfEdges, VertexTriangles};
-pub(crate) use circle::Circle;
 #[cfg(feature = "cli")]
 pub(crate) use generate::MAX_VERTICES;
+pub(crate) use refine::Circle;
+pub(crate) use topology::{HalfEdges, VertexTriangles};
 
 /// Where a vertex lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

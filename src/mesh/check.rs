@@ -3,19 +3,22 @@
 mod boundary;
 mod boxes;
 mod pieces;
+mod quality;
 #[cfg(test)]
 mod tests;
 
 use thiserror::Error;
 
-use super::adjacency::{HalfEdge, HalfEdges};
-use super::quality::angles;
 use super::{Mesh, Refinement, VertexKind};
 use crate::geometry::{distance_sq, twice_signed_area};
+use crate::mesh::topology::{HalfEdge, HalfEdges};
 use crate::text::Number;
 pub(super) use boundary::resolution;
+pub use quality::MeshQuality;
+
 use boundary::{Boundary, BoundaryEdge};
 use pieces::check_pieces;
+pub(in crate::mesh) use quality::angles;
 
 /// A triangle whose doubled area is below this fraction of its longest edge squared is degenerate. Rounding of the
 /// coordinates moves that fraction by about 1e-16; a sliver of 0.01 degrees has 1.7e-4.

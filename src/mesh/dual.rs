@@ -1,6 +1,6 @@
 //! The dual mesh `D_h` of section 4.2 and the triangulation `S_h` between it and `T_h`.
 
-use super::midpoints::Midpoints;
+use super::topology::Midpoints;
 use super::{Mesh, MeshError, VertexKind, VertexTriangles};
 use crate::geometry::twice_signed_area;
 

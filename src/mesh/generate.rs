@@ -1,11 +1,17 @@
 //! A mesh of a [`Domain`], structured or unstructured.
 
+mod polygon;
+mod structured;
+
 use thiserror::Error;
 
-use super::polygon::{MAX_MIN_ANGLE, largest_triangle, polygon};
-use super::{Mesh, Pattern, disk, l_shape, rectangle};
+pub use polygon::polygon;
+pub use structured::{Pattern, disk, l_shape, rectangle};
+
+use super::Mesh;
 use crate::problem::Domain;
 use crate::text::Number;
+use polygon::{MAX_MIN_ANGLE, largest_triangle};
 
 /// More vertices than this are refused: the system of a mesh of this size needs about 64 GiB.
 pub(crate) const MAX_VERTICES: f64 = 5e7;

@@ -1,139 +1,15 @@
-//! Uniform refinement: each triangle into four, by the midpoints of its edges.
+//! Finer meshes from coarse ones: uniform refinement, bisection, grading; and how each vertex has come about.
 
-use super::midpoints::Midpoints;
-use super::{Mesh, VertexKind};
+mod ancestry;
+mod bisect;
+mod circle;
+mod family;
+mod grade;
+mod uniform;
 
-/// A refined mesh and where its vertices come from.
-#[derive(Debug, Clone)]
-pub struct Refinement {
-    /// The refined mesh. Its first vertices are those of the coarse mesh, in their order.
-    pub mesh: Mesh,
-    /// For each further vertex the ends of the coarse edge whose midpoint it is: the prolongation of a P1 function
-    /// takes the mean of its values there. Shape: new vertices x 2.
-    pub parents: Vec<[usize; 2]>,
-}
+pub use ancestry::Parents;
+pub use bisect::Bisection;
+pub use family::MeshFamily;
+pub use uniform::Refinement;
 
-impl Mesh {
-    /// Divides every triangle into four similar ones. Linear time.
-    ///
-    /// Curved boundaries are not followed: the domain stays the polygon that the coarse mesh covers.
-    pub fn refine(&self) -> Refinement {
-        let midpoints = Midpoints::new(self);
-        let points = [self.points.as_slice(), &midpoints.points].concat();
-        let kind_of_midpoint =
-            |&boundary: &bool| if boundary { VertexKind::Boundary } else { VertexKind::Interior };
-        let kind =
-            self.kind.iter().copied().chain(midpoints.on_boundary.iter().map(kind_of_midpoint)).collect();
-        let triangles = self
-            .triangles
-            .iter()
-            .zip(&midpoints.of_triangle)
-            .flat_map(|(&[a, b, c], &[ab, bc, ca])| [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]])
-            .collect();
-        let ancestry = self.ancestry_of_refinement(&midpoints.ends);
-        Refinement { mesh: Mesh { points, triangles, kind, ancestry }, parents: midpoints.ends }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use proptest::prelude::*;
-
-    use super::*;
-    use crate::mesh::adjacency::HalfEdges;
-    use crate::mesh::samples::{assorted, irregular, renumbered, square};
-
-    /// Rounding of sums over the triangles of small meshes of size one.
-    const ROUNDING: f64 = 1e-12;
-
-    fn count(mesh: &Mesh, kind: VertexKind) -> usize {
-        mesh.kind().iter().filter(|&&k| k == kind).count()
-    }
-
-    #[test]
-    fn triangles_vertices_and_boundary_are_counted_by_eulers_formula() {
-        for coarse in assorted() {
-            let Refinement { mesh: fine, parents } = coarse.refine();
-            let (vertices, triangles) = (coarse.points().len(), coarse.triangles().len());
-            // Each vertex of the boundary starts as many edges of it as there are sectors of the domain at it.
-            let boundary =
-                HalfEdges::new(vertices, coarse.triangles()).edges().filter(|edge| edge.2.len() == 1).count();
-            let edges = (3 * triangles + boundary) / 2;
-            assert_eq!(fine.triangles().len(), 4 * triangles);
-            assert_eq!(fine.points().len(), vertices + edges);
-            assert_eq!(parents.len(), edges);
-            assert_eq!(count(&fine, VertexKind::Boundary), count(&coarse, VertexKind::Boundary) + boundary);
-            assert_eq!(count(&fine, VertexKind::Unused), count(&coarse, VertexKind::Unused));
-        }
-    }
-
-    #[test]
-    fn the_result_is_a_mesh_with_the_same_area_and_angles() {
-        for coarse in assorted() {
-            let fine = coarse.refine().mesh;
-            let checked = Mesh::new(fine.points().to_vec(), fine.triangles().to_vec()).unwrap();
-            assert_eq!(checked.triangles(), fine.triangles(), "counterclockwise");
-            assert_eq!(checked.kind(), fine.kind());
-            assert!((fine.area() - coarse.area()).abs() < ROUNDING);
-            let (before, after) = (coarse.quality(), fine.quality());
-            assert!((after.min_angle / before.min_angle - 1.0).abs() < ROUNDING);
-            assert!((after.max_angle / before.max_angle - 1.0).abs() < ROUNDING);
-            assert!((2.0 * after.h_max / before.h_max - 1.0).abs() < ROUNDING);
-            assert!((2.0 * after.h_min / before.h_min - 1.0).abs() < ROUNDING);
-        }
-        assert_ne!(square(2).refine().mesh.quality(), square(2).quality());
-    }
-
-    #[test]
-    fn old_vertices_stay_and_new_ones_are_the_midpoints_of_their_parents() {
-        for coarse in assorted() {
-            let Refinement { mesh: fine, parents } = coarse.refine();
-            let (old, new) = fine.points().split_at(coarse.points().len());
-            assert_eq!(old, coarse.points());
-            assert_eq!(fine.kind()[..old.len()], *coarse.kind());
-            for (&[a, b], &midpoint) in parents.iter().zip(new) {
-                let [p, q] = [old[a], old[b]];
-                assert_eq!(midpoint, [0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])]);
-                assert!(coarse.triangles().iter().any(|t| t.contains(&a) && t.contains(&b)), "an edge");
-            }
-            let mut different = parents.clone();
-            different.sort_unstable();
-            different.dedup();
-            assert_eq!(different.len(), parents.len(), "each edge once");
-        }
-    }
-
-    #[test]
-    fn one_triangle_becomes_four() {
-        let corners = vec![[0.0, 0.0], [2.0, 0.0], [0.0, 2.0]];
-        let Refinement { mesh, parents } = Mesh::new(corners, vec![[0, 1, 2]]).unwrap().refine();
-        assert_eq!(parents, [[0, 1], [0, 2], [1, 2]]);
-        assert_eq!(mesh.points()[3..], [[1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]);
-        assert_eq!(mesh.triangles(), [[0, 3, 4], [3, 1, 5], [4, 5, 2], [3, 5, 4]]);
-    }
-
-    /// The triangles as points, in an order that does not depend on the numbering.
-    fn triangles_as_points(mesh: &Mesh) -> Vec<[[u64; 2]; 3]> {
-        let bits = |t: usize| {
-            let mut corners = mesh.corners(t).map(|point| point.map(f64::to_bits));
-            corners.sort_unstable();
-            corners
-        };
-        let mut triangles: Vec<_> = (0..mesh.triangles().len()).map(bits).collect();
-        triangles.sort_unstable();
-        triangles
-    }
-
-    proptest! {
-        #![proptest_config(ProptestConfig::with_cases(32))]
-
-        #[test]
-        fn refining_commutes_with_renumbering(cells in 1..6usize, seed: u64) {
-            let mesh = irregular(cells);
-            let (other, _) = renumbered(&mesh, seed);
-            let (fine, other_fine) = (mesh.refine().mesh, other.refine().mesh);
-            prop_assert!(triangles_as_points(&fine) == triangles_as_points(&other_fine));
-            prop_assert!(triangles_as_points(&fine) != triangles_as_points(&mesh.refine().mesh.refine().mesh));
-        }
-    }
-}
+pub(crate) use circle::Circle;

@@ -1,6 +1,6 @@
 //! Meshes graded towards a point (Remark 10).
 
-use super::{Mesh, MeshError};
+use crate::mesh::{Mesh, MeshError};
 
 /// The area may change by rounding only; a boundary that the map does not keep changes it more.
 const AREA_TOLERANCE: f64 = 1e-10;

@@ -7,17 +7,17 @@ const OUTSIDE: usize = usize::MAX;
 
 /// The vertices of the cells of a grid that belong to the domain: corners along `x` first, then the centres of the
 /// crossed pattern in the order of the cells.
-pub(super) struct GridNumbering {
+pub(in crate::mesh) struct GridNumbering {
     /// Cells along either axis.
-    pub(super) cells: [usize; 2],
-    pub(super) vertices: usize,
+    pub(in crate::mesh) cells: [usize; 2],
+    pub(in crate::mesh) vertices: usize,
     corner: Vec<usize>,
     cell: Vec<usize>,
     corners: usize,
 }
 
 impl GridNumbering {
-    pub(super) fn new(
+    pub(in crate::mesh) fn new(
         [nx, ny]: [usize; 2],
         pattern: Pattern,
         inside: &impl Fn(usize, usize) -> bool,
@@ -46,28 +46,28 @@ impl GridNumbering {
     }
 
     /// The number of the corner `(i, j)`, which must be there.
-    pub(super) fn corner(&self, i: usize, j: usize) -> usize {
+    pub(in crate::mesh) fn corner(&self, i: usize, j: usize) -> usize {
         self.corner[j * (self.cells[0] + 1) + i]
     }
 
     /// The number of the centre of the cell `(i, j)`, which must be there.
-    pub(super) fn centre(&self, i: usize, j: usize) -> usize {
+    pub(in crate::mesh) fn centre(&self, i: usize, j: usize) -> usize {
         self.corners + self.cell[j * self.cells[0] + i]
     }
 
     /// Whether the cell `(i, j)` belongs to the domain.
-    pub(super) fn is_inside(&self, i: usize, j: usize) -> bool {
+    pub(in crate::mesh) fn is_inside(&self, i: usize, j: usize) -> bool {
         self.cell[j * self.cells[0] + i] != OUTSIDE
     }
 
     /// The cells of the domain.
-    pub(super) fn cells(&self) -> impl Iterator<Item = (usize, usize)> {
+    pub(in crate::mesh) fn cells(&self) -> impl Iterator<Item = (usize, usize)> {
         let [nx, ny] = self.cells;
         (0..ny).flat_map(move |j| (0..nx).map(move |i| (i, j))).filter(|&(i, j)| self.is_inside(i, j))
     }
 
     /// The corners of these cells with their numbers, in the order of the numbers.
-    pub(super) fn corners(&self) -> impl Iterator<Item = (usize, usize, usize)> {
+    pub(in crate::mesh) fn corners(&self) -> impl Iterator<Item = (usize, usize, usize)> {
         let width = self.cells[0] + 1;
         let numbered = self.corner.iter().enumerate().filter(|&(_, &number)| number != OUTSIDE);
         numbered.map(move |(at, &number)| (at % width, at / width, number))

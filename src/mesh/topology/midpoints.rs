@@ -1,22 +1,22 @@
 //! The midpoints of the edges.
 
-use super::Mesh;
-use super::edges::Edges;
+use crate::mesh::Mesh;
+use crate::mesh::topology::Edges;
 
 /// The midpoints of all edges, numbered after the vertices of the mesh.
-pub(super) struct Midpoints {
+pub(in crate::mesh) struct Midpoints {
     /// Coordinates, in the order of their numbers.
-    pub(super) points: Vec<[f64; 2]>,
+    pub(in crate::mesh) points: Vec<[f64; 2]>,
     /// The ends of each edge.
-    pub(super) ends: Vec<[usize; 2]>,
+    pub(in crate::mesh) ends: Vec<[usize; 2]>,
     /// Whether each edge lies on the boundary.
-    pub(super) on_boundary: Vec<bool>,
+    pub(in crate::mesh) on_boundary: Vec<bool>,
     /// `of_triangle[t][i]`: the number of the midpoint of the edge from corner `i` to corner `i + 1` of triangle `t`.
-    pub(super) of_triangle: Vec<[usize; 3]>,
+    pub(in crate::mesh) of_triangle: Vec<[usize; 3]>,
 }
 
 impl Midpoints {
-    pub(super) fn new(mesh: &Mesh) -> Self {
+    pub(in crate::mesh) fn new(mesh: &Mesh) -> Self {
         let edges = Edges::new(mesh);
         let number = |edge: usize| mesh.points.len() + edge;
         Self {
@@ -30,7 +30,7 @@ impl Midpoints {
 
 impl Mesh {
     /// The midpoint of an edge.
-    pub(super) fn midpoint(&self, ends: [usize; 2]) -> [f64; 2] {
+    pub(in crate::mesh) fn midpoint(&self, ends: [usize; 2]) -> [f64; 2] {
         let [p, q] = ends.map(|a| self.points[a]);
         [0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])]
     }

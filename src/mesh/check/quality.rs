@@ -1,7 +1,7 @@
 //! Shape regularity of a mesh.
 
-use super::Mesh;
 use crate::geometry::{distance_sq, twice_signed_area};
+use crate::mesh::Mesh;
 
 /// How well the triangles are shaped: the constants of the estimates depend on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,7 +48,7 @@ impl Mesh {
 }
 
 /// The angles at the corners of a triangle, radians.
-pub(super) fn angles(corners: [[f64; 2]; 3]) -> [f64; 3] {
+pub(in crate::mesh) fn angles(corners: [[f64; 2]; 3]) -> [f64; 3] {
     let twice_area = twice_signed_area(corners);
     [0, 1, 2].map(|i| {
         let [p, q, r] = [corners[i], corners[(i + 1) % 3], corners[(i + 2) % 3]];

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::Mesh;
+use crate::mesh::Mesh;
 
 /// The vertices of a mesh as vertices of a coarser mesh and midpoints of its edges.
 ///
@@ -17,7 +17,7 @@ pub struct Parents {
 impl Parents {
     /// # Panics
     /// When an end is no vertex of the coarser mesh.
-    pub(super) fn new(coarse_vertices: usize, ends: Vec<[u32; 2]>) -> Self {
+    pub(in crate::mesh) fn new(coarse_vertices: usize, ends: Vec<[u32; 2]>) -> Self {
         assert!(
             ends.iter().flatten().all(|&end| (end as usize) < coarse_vertices),
             "parents are coarse vertices"
@@ -26,7 +26,7 @@ impl Parents {
     }
 
     /// Those of a refinement that keeps the coarse vertices as the first ones; the others are midpoints.
-    pub(super) fn of_refinement(coarse_vertices: usize, midpoints: &[[usize; 2]]) -> Self {
+    pub(in crate::mesh) fn of_refinement(coarse_vertices: usize, midpoints: &[[usize; 2]]) -> Self {
         let kept = (0..coarse_vertices).map(|a| [a, a]);
         let ends = kept.chain(midpoints.iter().copied()).map(|ends| ends.map(|a| a as u32)).collect();
         Self::new(coarse_vertices, ends)
@@ -55,7 +55,7 @@ impl Mesh {
     ///
     /// # Panics
     /// When the last refinement does not lead to this mesh.
-    pub(super) fn with_ancestry(mut self, ancestry: Vec<Arc<Parents>>) -> Self {
+    pub(in crate::mesh) fn with_ancestry(mut self, ancestry: Vec<Arc<Parents>>) -> Self {
         let vertices = ancestry.last().map(|parents| parents.ends.len());
         assert!(vertices.is_none_or(|vertices| vertices == self.points.len()), "parents of every vertex");
         self.ancestry = ancestry;
@@ -63,7 +63,7 @@ impl Mesh {
     }
 
     /// The ancestry of a refinement of this mesh.
-    pub(super) fn ancestry_of_refinement(&self, midpoints: &[[usize; 2]]) -> Vec<Arc<Parents>> {
+    pub(in crate::mesh) fn ancestry_of_refinement(&self, midpoints: &[[usize; 2]]) -> Vec<Arc<Parents>> {
         let parents = Parents::of_refinement(self.points.len(), midpoints);
         self.ancestry.iter().cloned().chain([Arc::new(parents)]).collect()
     }

@@ -1,6 +1,6 @@
 //! The circle that the boundary of a refined mesh follows.
 
-use super::{Mesh, MeshError, VertexKind};
+use crate::mesh::{Mesh, MeshError, VertexKind};
 use crate::problem::Domain;
 
 /// The boundary of a disk.
@@ -20,7 +20,7 @@ impl Circle {
     }
 
     /// Moves vertices on the boundary to the circle, along the ray from its centre; `kind` says which they are.
-    pub(super) fn attract(self, points: &mut [[f64; 2]], kind: &[VertexKind]) {
+    pub(in crate::mesh) fn attract(self, points: &mut [[f64; 2]], kind: &[VertexKind]) {
         for (point, _) in points.iter_mut().zip(kind).filter(|(_, kind)| **kind == VertexKind::Boundary) {
             let [x, y] = [point[0] - self.centre[0], point[1] - self.centre[1]];
             let scale = self.radius / x.hypot(y);
@@ -34,7 +34,7 @@ impl Mesh {
     ///
     /// # Errors
     /// As [`Mesh::new`].
-    pub(super) fn checked(self) -> Result<Self, MeshError> {
+    pub(in crate::mesh) fn checked(self) -> Result<Self, MeshError> {
         Ok(Self::new(self.points, self.triangles)?.with_ancestry(self.ancestry))
     }
 }

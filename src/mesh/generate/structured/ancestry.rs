@@ -7,7 +7,7 @@ use super::numbering::GridNumbering;
 use crate::mesh::Parents;
 
 /// The ancestry of a grid, from the coarsest one; the cells `(i, j)` that belong to the domain are those `inside`.
-pub(super) fn ancestry(
+pub(in crate::mesh) fn ancestry(
     finest: GridNumbering,
     pattern: Pattern,
     inside: &impl Fn(usize, usize) -> bool,
@@ -53,7 +53,7 @@ fn grid_parents(fine: &GridNumbering, coarse: &GridNumbering, pattern: Pattern) 
 }
 
 /// The ancestry of a disk of rings, from the coarsest one.
-pub(super) fn disk_ancestry(rings: usize) -> Vec<Arc<Parents>> {
+pub(in crate::mesh) fn disk_ancestry(rings: usize) -> Vec<Arc<Parents>> {
     let halvings = rings.trailing_zeros();
     (0..halvings).rev().map(|k| Arc::new(disk_parents(rings >> k))).collect()
 }

@@ -1,20 +1,20 @@
 //! The edges of a mesh, numbered.
 
-use super::Mesh;
-use super::adjacency::HalfEdges;
+use crate::mesh::Mesh;
+use crate::mesh::topology::HalfEdges;
 
 /// The edges, in increasing order of their ends.
-pub(super) struct Edges {
+pub(in crate::mesh) struct Edges {
     /// The ends of each edge, the lower one first.
-    pub(super) ends: Vec<[usize; 2]>,
+    pub(in crate::mesh) ends: Vec<[usize; 2]>,
     /// The triangles on both sides of each edge; twice the same on the boundary.
-    pub(super) triangles: Vec<[usize; 2]>,
+    pub(in crate::mesh) triangles: Vec<[usize; 2]>,
     /// `of_triangle[t][i]`: the number of the edge from corner `i` to corner `i + 1` of triangle `t`.
-    pub(super) of_triangle: Vec<[usize; 3]>,
+    pub(in crate::mesh) of_triangle: Vec<[usize; 3]>,
 }
 
 impl Edges {
-    pub(super) fn new(mesh: &Mesh) -> Self {
+    pub(in crate::mesh) fn new(mesh: &Mesh) -> Self {
         let (mut ends, mut triangles) = (Vec::new(), Vec::new());
         let mut of_triangle = vec![[0; 3]; mesh.triangles.len()];
         for (lower, upper, sides) in HalfEdges::new(mesh.points.len(), &mesh.triangles).edges() {
@@ -31,7 +31,7 @@ impl Edges {
     }
 
     /// Whether the edge lies on the boundary.
-    pub(super) fn on_boundary(&self, edge: usize) -> bool {
+    pub(in crate::mesh) fn on_boundary(&self, edge: usize) -> bool {
         let [one, other] = self.triangles[edge];
         one == other
     }

@@ -4,12 +4,12 @@ use std::collections::HashSet;
 
 use spade::{AngleLimit, ConstrainedDelaunayTriangulation, Point2, RefinementParameters, Triangulation};
 
-use super::Mesh;
-use super::generate::{GenerateError, check_vertex_estimate};
 use crate::geometry::ring_area;
+use crate::mesh::Mesh;
+use crate::mesh::generate::{GenerateError, check_vertex_estimate};
 
 /// Ruppert's algorithm ends for angles up to about 33 degrees; 30 is what it reaches on any input in practice.
-pub(super) const MAX_MIN_ANGLE: f64 = 30.0;
+pub(in crate::mesh) const MAX_MIN_ANGLE: f64 = 30.0;
 
 /// The mesh's area may differ from the polygon's by rounding only, this fraction of it; a hole outside of the polygon
 /// or across another one makes a larger difference.
@@ -78,7 +78,7 @@ pub fn polygon(
 }
 
 /// The area of an equilateral triangle of this edge length.
-pub(super) fn largest_triangle(size: f64) -> f64 {
+pub(in crate::mesh) fn largest_triangle(size: f64) -> f64 {
     0.25 * 3f64.sqrt() * size * size
 }
 

@@ -141,7 +141,7 @@ fn angles_stay_away_from_zero() {
 
 /// The angles of a triangle in increasing order, rounded: similar triangles have the same.
 fn shape(corners: [[f64; 2]; 3]) -> [i64; 3] {
-    let mut angles = crate::mesh::quality::angles(corners).map(|angle| (1e6 * angle).round() as i64);
+    let mut angles = crate::mesh::check::angles(corners).map(|angle| (1e6 * angle).round() as i64);
     angles.sort_unstable();
     angles
 }

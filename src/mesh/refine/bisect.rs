@@ -3,11 +3,11 @@
 #[cfg(test)]
 mod tests;
 
-use super::check::{Sense, resolution, sense};
 use super::circle::Circle;
-use super::edges::Edges;
-use super::{Mesh, MeshError, VertexKind};
 use crate::geometry::distance_sq;
+use crate::mesh::check::{Sense, resolution, sense};
+use crate::mesh::topology::Edges;
+use crate::mesh::{Mesh, MeshError, VertexKind};
 use crate::problem::Domain;
 
 /// Edges are at least this many times as long as the distance at which points are told apart: then [`Mesh::new`] accepts
@@ -79,7 +79,7 @@ impl Bisection {
     ///
     /// `marked` are numbers of triangles of the current mesh, in any order; one may be there more than once. Returns the
     /// parents of the new vertices: the ends of the edge whose midpoint each is (moved to the circle, on the boundary of a
-    /// disk), see [`Refinement`](super::Refinement). Shape: new vertices x 2. Old vertices keep their numbers, and children
+    /// disk), see [`Refinement`](crate::mesh::Refinement). Shape: new vertices x 2. Old vertices keep their numbers, and children
     /// take the place of their parent among the triangles. The ancestry of the mesh grows by one level. If nothing is marked,
     /// the mesh stays as it is, each triangle its own origin.
     ///

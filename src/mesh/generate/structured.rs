@@ -3,7 +3,7 @@
 mod ancestry;
 mod numbering;
 
-use super::{Mesh, MeshError};
+use crate::mesh::{Mesh, MeshError};
 use ancestry::{ancestry, disk_ancestry};
 use numbering::GridNumbering;
 

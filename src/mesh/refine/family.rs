@@ -1,7 +1,7 @@
 //! A coarse mesh and the finer ones that follow its domain.
 
 use super::circle::Circle;
-use super::{Mesh, MeshError, Refinement};
+use crate::mesh::{Mesh, MeshError, Refinement};
 use crate::problem::Domain;
 
 /// A mesh that can be refined again and again, the finer ones following a curved boundary or a grading.

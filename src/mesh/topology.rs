@@ -1,0 +1,9 @@
+//! Which triangles, edges and vertices of a mesh meet.
+
+mod adjacency;
+mod edges;
+mod midpoints;
+
+pub(crate) use adjacency::{HalfEdge, HalfEdges, VertexTriangles};
+pub(super) use edges::Edges;
+pub(super) use midpoints::Midpoints;
