@@ -110,7 +110,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let load = Expression::parse("10*sin(pi*x)")?;
     let problem = ContactProblem::builder().tension(1.0, 3.0).load(-15.0, load).height(0.1).build()?;
     let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [32, 32], Pattern::Right)?;
-    let d = Discretization::new(&problem, &mesh)?;
+    let d = Discretization::new(&problem, mesh)?;
     let options = SolverOptions { polish: false, ..SolverOptions::default() };
 
     let candidate = QpSolver::new(MethodOfMultipliers { penalty: 100.0 }).solve(&d, &options)?;

@@ -1,5 +1,7 @@
 //! A problem on a mesh: everything that the discrete problem (3.4) is made of.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 use sprs::CsMat;
 use thiserror::Error;
@@ -20,8 +22,8 @@ const BLOCK: usize = 4096;
 /// Vectors over *vertices* have an entry for each vertex of the mesh; vectors over *unknowns* have one for each
 /// interior vertex, in the order of [`interior`](Self::interior).
 #[derive(Debug, Clone)]
-pub struct Discretization<'m> {
-    pub(crate) mesh: &'m Mesh,
+pub struct Discretization {
+    pub(crate) mesh: Arc<Mesh>,
     pub(crate) tension: [f64; 2],
     pub(crate) stiffness: CsMat<f64>,
     pub(crate) interior_stiffness: CsMat<f64>,
@@ -58,13 +60,15 @@ pub(crate) struct Balance {
     pub(crate) terms: f64,
 }
 
-impl<'m> Discretization<'m> {
+impl Discretization {
     /// Assembles the discrete problem. Linear time and memory.
     ///
     /// # Errors
     /// [`DiscretizationError`] when a load is not finite at a quadrature point, the height is negative or not finite at a
     /// boundary vertex, or tensions, loads or displacements are so large or small that energies would overflow.
-    pub fn new(problem: &ContactProblem, mesh: &'m Mesh) -> Result<Self, DiscretizationError> {
+    pub fn new(problem: &ContactProblem, mesh: impl Into<Arc<Mesh>>) -> Result<Self, DiscretizationError> {
+        let shared: Arc<Mesh> = mesh.into();
+        let mesh = &*shared;
         let around = VertexTriangles::new(mesh.points().len(), mesh.triangles());
         let moments_of = |i: usize| {
             LoadMoments::new(mesh, &problem.load()[i])
@@ -83,7 +87,6 @@ impl<'m> Discretization<'m> {
         let scales = Scales::new(mesh, problem.tension(), &load, &height, &dual_area);
         scales.check_range(problem.tension())?;
         Ok(Self {
-            mesh,
             tension: problem.tension(),
             interior_stiffness: principal_submatrix(&stiffness, &interior),
             stiffness,
@@ -93,12 +96,13 @@ impl<'m> Discretization<'m> {
             interior,
             dual_area,
             scales,
+            mesh: shared,
         })
     }
 
     /// The mesh.
-    pub fn mesh(&self) -> &'m Mesh {
-        self.mesh
+    pub fn mesh(&self) -> &Arc<Mesh> {
+        &self.mesh
     }
 
     /// `[mu1, mu2]`.

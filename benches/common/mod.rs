@@ -17,8 +17,8 @@ pub fn mesh(cells: usize) -> Mesh {
 }
 
 /// The problem of the family on one of its meshes.
-pub fn discretize(mesh: &Mesh) -> Discretization<'_> {
-    Discretization::new(&square_problem().expect("valid data"), mesh).expect("valid data")
+pub fn discretize(mesh: &Mesh) -> Discretization {
+    Discretization::new(&square_problem().expect("valid data"), mesh.clone()).expect("valid data")
 }
 
 /// Few samples, a few seconds for each benchmark.

@@ -45,7 +45,7 @@ fn assert_seen(d: &Discretization, candidate: Candidate, checks: &[fn(&Residuals
 #[test]
 fn a_sound_candidate_is_certified_with_part_in_contact() {
     let mesh = mesh();
-    let d = Discretization::new(&problem(0.0), &mesh).unwrap();
+    let d = Discretization::new(&problem(0.0), mesh.clone()).unwrap();
     let solution = certify(&d, solve(&d, true, None), TOLERANCE).unwrap();
     let touching = solution.contact().iter().filter(|&&contact| contact).count();
     assert!(0 < touching && touching < d.interior().len(), "the faults below need both: {touching}");
@@ -54,7 +54,7 @@ fn a_sound_candidate_is_certified_with_part_in_contact() {
 #[test]
 fn a_flipped_boundary_lift_is_seen_although_the_backend_is_content() {
     let mesh = mesh();
-    let d = Discretization::new(&problem(0.0), &mesh).unwrap();
+    let d = Discretization::new(&problem(0.0), mesh.clone()).unwrap();
     let mut flipped = d.clone();
     flipped.height.iter_mut().for_each(|g| *g = -*g);
     let mut candidate = solve(&flipped, false, None);
@@ -68,7 +68,7 @@ fn a_flipped_boundary_lift_is_seen_although_the_backend_is_content() {
 #[test]
 fn a_wrong_dual_area_is_seen() {
     let mesh = mesh();
-    let d = Discretization::new(&problem(0.0), &mesh).unwrap();
+    let d = Discretization::new(&problem(0.0), mesh.clone()).unwrap();
     let candidate = solve(&d, true, None);
     let pushed = (0..candidate.multiplier.len()).find(|&k| candidate.multiplier[k] > 0.0).expect("contact");
     let mut wrong = d.clone();
@@ -79,7 +79,7 @@ fn a_wrong_dual_area_is_seen() {
 #[test]
 fn a_flipped_dual_is_seen() {
     let mesh = mesh();
-    let d = Discretization::new(&problem(0.0), &mesh).unwrap();
+    let d = Discretization::new(&problem(0.0), mesh.clone()).unwrap();
     let mut candidate = solve(&d, true, None);
     candidate.multiplier.iter_mut().for_each(|y| *y = -*y);
     assert_seen(&d, candidate, &[|r| r.dual_sign, |r| r.stationarity, |r| r.dual_mismatch]);
@@ -88,10 +88,10 @@ fn a_flipped_dual_is_seen() {
 #[test]
 fn action_without_touching_is_seen_although_the_equations_hold() {
     let mesh = mesh();
-    let d = Discretization::new(&problem(0.0), &mesh).unwrap();
+    let d = Discretization::new(&problem(0.0), mesh.clone()).unwrap();
     // A push p of one membrane on the other, wherever they are: mu1 K u1 - F_1 = p |D_a| = F_2 - mu2 K u2.
     let push = 30.0;
-    let pushed = Discretization::new(&problem(push), &mesh).unwrap();
+    let pushed = Discretization::new(&problem(push), mesh.clone()).unwrap();
     let mut candidate = solve(&pushed, true, None);
     for (y, &a) in candidate.multiplier.iter_mut().zip(d.interior()) {
         assert_eq!(*y, 0.0, "the membranes are apart");
@@ -107,7 +107,7 @@ fn action_without_touching_is_seen_although_the_equations_hold() {
 #[test]
 fn membranes_that_pass_through_each_other_are_seen() {
     let mesh = mesh();
-    let d = Discretization::new(&problem(0.0), &mesh).unwrap();
+    let d = Discretization::new(&problem(0.0), mesh.clone()).unwrap();
     let mut candidate = solve(&d, true, None);
     let a = d.interior()[candidate.multiplier.iter().position(|&y| y > 0.0).expect("contact")];
     candidate.displacement[0][a] -= 0.1;
@@ -117,7 +117,7 @@ fn membranes_that_pass_through_each_other_are_seen() {
 #[test]
 fn a_wrong_trace_is_seen() {
     let mesh = mesh();
-    let d = Discretization::new(&problem(0.0), &mesh).unwrap();
+    let d = Discretization::new(&problem(0.0), mesh.clone()).unwrap();
     for membrane in 0..2 {
         let mut candidate = solve(&d, true, None);
         candidate.displacement[membrane][0] += 0.1;
@@ -128,7 +128,7 @@ fn a_wrong_trace_is_seen() {
 #[test]
 fn displacements_of_one_membrane_alone_are_seen_by_the_mismatch_of_the_actions() {
     let mesh = mesh();
-    let d = Discretization::new(&problem(0.0), &mesh).unwrap();
+    let d = Discretization::new(&problem(0.0), mesh.clone()).unwrap();
     for membrane in 0..2 {
         let mut candidate = solve(&d, true, None);
         let middle = d.interior()[d.interior().len() / 2];
@@ -140,7 +140,7 @@ fn displacements_of_one_membrane_alone_are_seen_by_the_mismatch_of_the_actions()
 #[test]
 fn the_action_depends_on_the_gap_alone() {
     let mesh = mesh();
-    let d = Discretization::new(&problem(0.0), &mesh).unwrap();
+    let d = Discretization::new(&problem(0.0), mesh.clone()).unwrap();
     let [mut u1, mut u2] = solve(&d, true, None).displacement;
     let before = Action::recover(&d, &[u1.clone(), u2.clone()]);
     for &a in d.interior() {
@@ -162,7 +162,7 @@ fn the_action_depends_on_the_gap_alone() {
 #[test]
 fn nan_and_infinity_never_pass() {
     let mesh = mesh();
-    let d = Discretization::new(&problem(0.0), &mesh).unwrap();
+    let d = Discretization::new(&problem(0.0), mesh.clone()).unwrap();
     let sound = solve(&d, true, None);
     for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let mut candidate = sound.clone();
@@ -181,7 +181,7 @@ fn nan_and_infinity_never_pass() {
 #[test]
 fn an_early_stop_is_seen_and_mended_by_the_polish() {
     let mesh = mesh();
-    let d = Discretization::new(&problem(0.0), &mesh).unwrap();
+    let d = Discretization::new(&problem(0.0), mesh.clone()).unwrap();
     let stopped = solve(&d, false, Some(3));
     assert_eq!(stopped.statistics.status, crate::qp::Status::IterationLimit);
     assert_seen(&d, stopped, &[|r| r.complementarity]);
@@ -192,7 +192,7 @@ fn an_early_stop_is_seen_and_mended_by_the_polish() {
 #[test]
 fn what_is_held_against_the_tolerance_is_the_largest_residual_beyond_rounding() {
     let mesh = mesh();
-    let d = Discretization::new(&problem(0.0), &mesh).unwrap();
+    let d = Discretization::new(&problem(0.0), mesh.clone()).unwrap();
     let sound = certify(&d, solve(&d, true, None), TOLERANCE).unwrap();
     assert!(sound.residuals().beyond_rounding() <= TOLERANCE);
     let rejected = certify(&d, solve(&d, false, Some(3)), TOLERANCE).unwrap_err();
@@ -204,7 +204,7 @@ fn what_is_held_against_the_tolerance_is_the_largest_residual_beyond_rounding() 
 #[test]
 fn the_remedy_follows_from_why_the_solver_stopped() {
     let mesh = mesh();
-    let d = Discretization::new(&problem(0.0), &mesh).unwrap();
+    let d = Discretization::new(&problem(0.0), mesh.clone()).unwrap();
     let mut stopped = solve(&d, false, Some(3));
     let remedy = |candidate: Candidate| certify(&d, candidate, TOLERANCE).unwrap_err().remedy();
     assert!(remedy(stopped.clone()).contains("more iterations"));
@@ -215,7 +215,7 @@ fn the_remedy_follows_from_why_the_solver_stopped() {
 #[test]
 fn vectors_of_the_wrong_length_are_rejected() {
     let mesh = mesh();
-    let d = Discretization::new(&problem(0.0), &mesh).unwrap();
+    let d = Discretization::new(&problem(0.0), mesh.clone()).unwrap();
     let sound = solve(&d, true, None);
     let mut short = sound.clone();
     short.multiplier.pop();

@@ -197,7 +197,8 @@ fn write_results(
     let (Some((solution, bound)), Some(last)) = (study.solution(), levels.last()) else { return Ok(()) };
     let failed = |name: &str, error: &dyn std::fmt::Display| Failure::Input(format!("{name}: {error}"));
     let mesh = study.mesh();
-    let d = Discretization::new(study.problem(), mesh).map_err(|error| failed(&case.title, &error))?;
+    let d =
+        Discretization::new(study.problem(), mesh.clone()).map_err(|error| failed(&case.title, &error))?;
     let mut results = Results::new(folder);
     write_solution(&mut results, &case.title, &d, solution, bound)?;
     let seconds = Seconds { bound: last.bound_seconds, ..Seconds::default() };

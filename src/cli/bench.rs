@@ -4,6 +4,7 @@ mod files;
 mod table;
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use super::Failure;
 use super::args::{BenchArguments, CaseArguments, output_folder};
@@ -119,7 +120,7 @@ impl<'a> Bench<'a> {
         self.progress.steps(sizes.len() * self.solvers.len());
         let mut comparison = self.comparison();
         for n in sizes {
-            let mesh = square_mesh(n).map_err(|error| bad_input(&error))?;
+            let mesh = Arc::new(square_mesh(n).map_err(|error| bad_input(&error))?);
             self.measure(&mut comparison, SQUARE, n, &problem, &mesh)?;
         }
         Ok(())
@@ -154,12 +155,12 @@ impl<'a> Bench<'a> {
         name: &str,
         n: usize,
         problem: &ContactProblem,
-        mesh: &Mesh,
+        mesh: &Arc<Mesh>,
     ) -> Result<(), Failure> {
         let vertices = grouped(mesh.points().len());
         self.progress.stage(format!("assembling on {vertices} vertices"));
-        let d =
-            Discretization::new(problem, mesh).map_err(|error| Failure::Input(format!("{name}: {error}")))?;
+        let d = Discretization::new(problem, mesh.clone())
+            .map_err(|error| Failure::Input(format!("{name}: {error}")))?;
         let place = Place { problem: name, n, discretization: &d };
         for index in 0..self.solvers.len() {
             self.progress.stage(format!("{} on {vertices} vertices", self.solvers[index].as_str()));

@@ -47,10 +47,10 @@ impl Setup {
     }
 
     /// Assembles the discrete problem, and says how long it took.
-    pub(super) fn discretize(&self, progress: &Progress) -> Result<(Discretization<'_>, Seconds), Failure> {
+    pub(super) fn discretize(&self, progress: &Progress) -> Result<(Discretization, Seconds), Failure> {
         progress.stage(format!("assembling on {} vertices", grouped(self.family.mesh().points().len())));
         let start = Instant::now();
-        let d = Discretization::new(&self.case.problem, self.family.mesh())
+        let d = Discretization::new(&self.case.problem, self.family.mesh().clone())
             .map_err(|error| Failure::Input(format!("{}: {error}", self.name)))?;
         Ok((d, Seconds { assembly: start.elapsed().as_secs_f64(), ..self.seconds }))
     }

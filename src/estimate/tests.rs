@@ -40,7 +40,7 @@ pub(super) fn solve(d: &Discretization) -> ContactSolution {
 
 fn measure(exact: &ExactSolution, mesh: &Mesh) -> ErrorNorms {
     let problem = problem(exact);
-    let d = Discretization::new(&problem, mesh).unwrap();
+    let d = Discretization::new(&problem, mesh.clone()).unwrap();
     ErrorNorms::new(&d, &solve(&d), exact).unwrap()
 }
 
@@ -136,7 +136,7 @@ fn an_action_of_the_wrong_sign_or_displacements_exchanged_do_not_converge() {
     let problem = problem(&exact);
     let norms = [16, 32].map(|cells| {
         let mesh = mesh(&exact.domain(), cells);
-        let d = Discretization::new(&problem, &mesh).unwrap();
+        let d = Discretization::new(&problem, mesh.clone()).unwrap();
         let solution = solve(&d);
         let [u1, u2] = solution.displacement().clone();
         let flipped: Vec<f64> = solution.lambda().iter().map(|lambda| -lambda).collect();
@@ -171,7 +171,7 @@ fn the_quadrature_resolves_the_free_boundary_and_says_how_well() {
     let exact = exact(Case::Circle, &[]);
     let mesh = irregular(8);
     let problem = problem(&exact);
-    let d = Discretization::new(&problem, &mesh).unwrap();
+    let d = Discretization::new(&problem, mesh.clone()).unwrap();
     let solution = solve(&d);
     let measure = |rule: &CutRule| {
         let fields = Fields { displacement: solution.displacement(), lambda: solution.lambda() };
@@ -209,7 +209,7 @@ fn a_solution_of_another_mesh_is_refused() {
     let exact = exact(Case::Circle, &[]);
     let problem = problem(&exact);
     let meshes = [4, 5].map(|cells| mesh(&exact.domain(), cells));
-    let [d, other] = [0, 1].map(|k| Discretization::new(&problem, &meshes[k]).unwrap());
+    let [d, other] = [0, 1].map(|k| Discretization::new(&problem, meshes[k].clone()).unwrap());
     let error = ErrorNorms::new(&other, &solve(&d), &exact).unwrap_err();
     assert_eq!(error, MeasureError::OtherMesh { values: 25, vertices: 36 });
     assert!(error.to_string().contains("25 values") && ErrorNorms::new(&d, &solve(&d), &exact).is_ok());

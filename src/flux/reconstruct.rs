@@ -10,7 +10,7 @@ use crate::mesh::{Mesh, SubTriangulation};
 /// Reconstructs fluxes from displacements: what all reconstructions on one mesh share.
 #[derive(Debug, Clone)]
 pub struct Reconstructor<'a> {
-    pub(super) d: &'a Discretization<'a>,
+    pub(super) d: &'a Discretization,
     pub(super) sub: &'a SubTriangulation,
     pub(super) load: [Vec<[f64; 3]>; 2],
     fans: Vec<Fan>,
@@ -22,7 +22,7 @@ impl<'a> Reconstructor<'a> {
     ///
     /// # Panics
     /// When `sub` or `load` are not of the mesh of `d`.
-    pub fn new(d: &'a Discretization<'a>, sub: &'a SubTriangulation, load: [Vec<[f64; 3]>; 2]) -> Self {
+    pub fn new(d: &'a Discretization, sub: &'a SubTriangulation, load: [Vec<[f64; 3]>; 2]) -> Self {
         let triangles = d.mesh().triangles().len();
         assert_eq!(sub.mesh().triangles().len(), 6 * triangles, "six sub-triangles a triangle");
         assert!(load.iter().all(|load| load.len() == triangles), "loads are over triangles");

@@ -53,7 +53,7 @@ mod tests {
     fn written(mesh: &Mesh) -> (ContactSolution, String) {
         let problem =
             ContactProblem::builder().tension(1.0, 3.0).load(-15.0, 10.0).height(0.1).build().unwrap();
-        let d = Discretization::new(&problem, mesh).unwrap();
+        let d = Discretization::new(&problem, mesh.clone()).unwrap();
         let candidate = ActiveSet.solve(&d, &SolverOptions::default()).unwrap();
         let solution = certify(&d, candidate, 1e-8).unwrap();
         let dual = DualMesh::new(mesh, &SubTriangulation::new(mesh).unwrap());

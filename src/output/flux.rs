@@ -52,7 +52,7 @@ mod tests {
         let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [8, 8], Pattern::Right).unwrap();
         let problem =
             ContactProblem::builder().tension(1.0, 3.0).load(-15.0, 10.0).height(0.1).build().unwrap();
-        let d = Discretization::new(&problem, &mesh).unwrap();
+        let d = Discretization::new(&problem, mesh.clone()).unwrap();
         let candidate = ActiveSet.solve(&d, &SolverOptions::default()).unwrap();
         let solution = certify(&d, candidate, 1e-8).unwrap();
         let sub = SubTriangulation::new(&mesh).unwrap();

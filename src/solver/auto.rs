@@ -67,7 +67,7 @@ mod tests {
             ContactProblem::builder().tension(1.0, 3.0).load(-1.5e5, 1e5).height(0.1).build().unwrap();
         let choice = |height: f64| {
             let mesh = rectangle([0.0, 0.0], [1.0, height], [64; 2], Pattern::Crossed).unwrap();
-            let d = Discretization::new(&problem, &mesh).unwrap();
+            let d = Discretization::new(&problem, mesh.clone()).unwrap();
             let statistics = Auto.solve(&d, &SolverOptions::default()).expect("it runs").statistics;
             assert_eq!(statistics.status, Status::Solved, "{statistics:?}");
             (statistics.solver, statistics.choice.expect("it was left open"))

@@ -16,14 +16,14 @@ use crate::mesh::VertexKind;
 const BLOCK: usize = 4096;
 
 /// The data of the two halves on a discretization, each with the matrix `K`: the gap's divided by `m`.
-pub(crate) struct Decoupled<'d, 'm> {
-    d: &'d Discretization<'m>,
+pub(crate) struct Decoupled<'d> {
+    d: &'d Discretization,
     /// `mu1 / M`, `mu2 / M`: fractions, because products of large tensions would overflow.
     share: [f64; 2],
 }
 
-impl<'d, 'm> Decoupled<'d, 'm> {
-    pub(crate) fn new(d: &'d Discretization<'m>) -> Self {
+impl<'d> Decoupled<'d> {
+    pub(crate) fn new(d: &'d Discretization) -> Self {
         let [mu1, mu2] = d.tension();
         Self { d, share: [mu1 / (mu1 + mu2), mu2 / (mu1 + mu2)] }
     }

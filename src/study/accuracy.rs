@@ -151,7 +151,7 @@ mod tests {
         let problem =
             ContactProblem::builder().tension(1.0, 3.0).load(-15.0, 10.0).height(0.1).build().unwrap();
         let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [64, 64], Pattern::Right).unwrap();
-        let d = Discretization::new(&problem, &mesh).unwrap();
+        let d = Discretization::new(&problem, mesh.clone()).unwrap();
         let options = SolverOptions { polish: false, ..SolverOptions::default() };
         solve_bounded(&problem, None, &d, solver, &options, tolerance).unwrap()
     }

@@ -1,5 +1,6 @@
 //! Meshes that are refined where the error is.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
@@ -111,7 +112,7 @@ impl AdaptiveStudy {
         problem: ContactProblem,
         domain: Option<Domain>,
         exact: Option<ExactSolution>,
-        mesh: Mesh,
+        mesh: impl Into<Arc<Mesh>>,
         solver: Box<dyn ContactSolver>,
         options: SolverOptions,
         tolerance: Tolerance,
@@ -124,7 +125,7 @@ impl AdaptiveStudy {
     }
 
     /// The current mesh.
-    pub fn mesh(&self) -> &Mesh {
+    pub fn mesh(&self) -> &Arc<Mesh> {
         self.bisection.mesh()
     }
 
@@ -160,7 +161,7 @@ impl AdaptiveStudy {
         };
         self.last = None;
         let level = self.marked.len();
-        let d = Discretization::new(&self.problem, self.bisection.mesh())?;
+        let d = Discretization::new(&self.problem, self.bisection.mesh().clone())?;
         let warm_start = prolonged.map(|fields| fields.into_start(&d));
         let options = SolverOptions { warm_start, ..self.options.clone() };
         let domain = self.domain.as_ref();
@@ -245,7 +246,7 @@ impl AdaptiveStudy {
         if bisection.mesh().points().len() != vertices {
             return Ok(false);
         }
-        let d = Discretization::new(&self.problem, bisection.mesh())?;
+        let d = Discretization::new(&self.problem, bisection.mesh().clone())?;
         let StartingPoint { displacement, multiplier } = Fields { displacement, lambda }.into_start(&d);
         let Ok(solution) = certify(&d, Candidate { displacement, multiplier, statistics }, tolerance) else {
             return Ok(false);

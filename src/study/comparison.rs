@@ -60,7 +60,7 @@ pub struct Place<'a> {
     /// The number of the mesh: cells along a side, or refinements.
     pub n: usize,
     /// The problem on the mesh.
-    pub discretization: &'a Discretization<'a>,
+    pub discretization: &'a Discretization,
 }
 
 impl Comparison {

@@ -144,7 +144,7 @@ impl ConvergenceStudy {
             None => None,
             Some(last) => Some(last.prolonged(&self.family.refine()?)),
         };
-        let d = Discretization::new(&self.problem, self.family.mesh())?;
+        let d = Discretization::new(&self.problem, self.family.mesh().clone())?;
         let warm_start = prolonged.map(|fields| fields.into_start(&d));
         let options = SolverOptions { warm_start, ..self.options.clone() };
         let domain = self.exact.domain();

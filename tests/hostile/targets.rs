@@ -114,7 +114,7 @@ fn posed_on(mesh: Mesh) {
     if mesh.triangles().len() > FEW {
         return;
     }
-    if let Err(error) = Discretization::new(&problem(), &mesh) {
+    if let Err(error) = Discretization::new(&problem(), mesh.clone()) {
         refused(error);
     }
     if let Err(error) = Bisection::new(mesh).refine(&[0]) {

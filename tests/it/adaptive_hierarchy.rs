@@ -28,7 +28,7 @@ fn towards_corner(steps: i32, ratio: f64) -> Mesh {
         let marked: Vec<usize> = (0..mesh.triangles().len()).filter(is_near).collect();
         bisection.refine(&marked).expect("far from the limit");
     }
-    bisection.mesh().clone()
+    Mesh::clone(bisection.mesh())
 }
 
 fn problem() -> ContactProblem {
@@ -38,7 +38,7 @@ fn problem() -> ContactProblem {
 
 /// By multigrid and by the active set method, certified.
 fn solutions(mesh: &Mesh) -> [ContactSolution; 2] {
-    let d = Discretization::new(&problem(), mesh).unwrap();
+    let d = Discretization::new(&problem(), mesh.clone()).unwrap();
     let solvers: [&mut dyn ContactSolver; 2] = [&mut Multigrid, &mut ActiveSet];
     solvers.map(|solver| certify(&d, solve(solver, &d, true), TOLERANCE).expect("certified"))
 }
@@ -57,7 +57,7 @@ fn both_solvers_run_along_the_bisections() {
     }
     let statistics = multigrid.statistics();
     assert!(statistics.iterations <= CYCLES, "{:?} cycles", statistics.level_iterations);
-    let d = Discretization::new(&problem(), &mesh).unwrap();
+    let d = Discretization::new(&problem(), mesh.clone()).unwrap();
     let options = SolverOptions { max_iterations: Some(TOO_FEW), ..SolverOptions::default() };
     let stopped = Multigrid.solve(&d, &options).expect("it runs");
     assert!(certify(&d, stopped, TOLERANCE).is_err(), "cycles are needed");

@@ -38,7 +38,7 @@ cells = 6
 fn solved_elsewhere() -> (Vec<f64>, Vec<f64>) {
     let case = CaseFile::parse("case.toml", CASE, Path::new("case.toml")).expect("a valid case");
     let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [CELLS, CELLS], Pattern::Right).expect("a mesh");
-    let d = Discretization::new(&case.problem, &mesh).expect("valid data");
+    let d = Discretization::new(&case.problem, mesh.clone()).expect("valid data");
     let options = QpOptions { tolerance: 1e-12, ..QpOptions::default() };
     let solution = Clarabel.solve(&contact_qp(&d), &options).expect("it runs");
     (solution.x, solution.y)

@@ -97,7 +97,7 @@ fn every_backend_finds_primal_and_dual_with_our_sign() {
 fn every_backend_says_when_it_stops_early_and_returns_its_iterate() {
     let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [16, 16], Pattern::Right).unwrap();
     let problem = exact(Case::Circle, &[]).problem().unwrap();
-    let qp = contact_qp(&Discretization::new(&problem, &mesh).unwrap()).nondimensional();
+    let qp = contact_qp(&Discretization::new(&problem, mesh.clone()).unwrap()).nondimensional();
     for mut backend in backends() {
         let stopped = QpOptions { max_iterations: Some(3), ..QpOptions::default() };
         let solution = backend.solve(&qp, &stopped).expect("it runs");
@@ -119,7 +119,7 @@ fn every_backend_says_when_it_stops_early_and_returns_its_iterate() {
 fn residuals_follow_the_tolerance() {
     let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [16, 16], Pattern::Right).unwrap();
     let problem = exact(Case::Circle, &[]).problem().unwrap();
-    let qp = contact_qp(&Discretization::new(&problem, &mesh).unwrap()).nondimensional();
+    let qp = contact_qp(&Discretization::new(&problem, mesh.clone()).unwrap()).nondimensional();
     for mut backend in backends() {
         for tolerance in [1e-3, 1e-5, 1e-8] {
             let solution =
@@ -152,7 +152,7 @@ fn programs_without_a_solution_are_never_solved() {
 fn results_and_iterations_are_the_same_in_every_run() {
     let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [16, 16], Pattern::Crossed).unwrap();
     let problem = exact(Case::Circle, &[]).problem().unwrap();
-    let d = Discretization::new(&problem, &mesh).unwrap();
+    let d = Discretization::new(&problem, mesh.clone()).unwrap();
     for mut solver in solvers() {
         let [first, second] = [(); 2].map(|()| solve(solver.as_mut(), &d, true));
         assert_eq!(first.displacement, second.displacement);
@@ -170,8 +170,9 @@ fn osqp_needs_fewer_iterations_from_a_warm_start() {
     let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [24, 24], Pattern::Right).unwrap();
     let problem = exact(Case::Circle, &[]).problem().unwrap();
     let nearby = exact(Case::Circle, &[("q", 10.1)]).problem().unwrap();
-    let solution = solve(&mut QpSolver::new(Osqp), &Discretization::new(&problem, &mesh).unwrap(), true);
-    let d = Discretization::new(&nearby, &mesh).unwrap();
+    let solution =
+        solve(&mut QpSolver::new(Osqp), &Discretization::new(&problem, mesh.clone()).unwrap(), true);
+    let d = Discretization::new(&nearby, mesh.clone()).unwrap();
     let [cold, warm] = [None, Some(solution.into())].map(|warm_start| {
         let options = SolverOptions { warm_start, ..SolverOptions::default() };
         QpSolver::new(Osqp).solve(&d, &options).expect("it runs").statistics.iterations
@@ -184,7 +185,7 @@ fn the_active_set_needs_one_solve_from_its_own_answer_and_few_from_a_nearby_one(
     let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [24, 24], Pattern::Right).unwrap();
     let steps = |parameters: &[(&str, f64)], warm_start: Option<StartingPoint>| {
         let problem = exact(Case::Circle, parameters).problem().unwrap();
-        let d = Discretization::new(&problem, &mesh).unwrap();
+        let d = Discretization::new(&problem, mesh.clone()).unwrap();
         let options = SolverOptions { warm_start, ..SolverOptions::default() };
         ActiveSet.solve(&d, &options).expect("it runs")
     };
@@ -201,7 +202,7 @@ fn the_active_set_stopped_early_is_rejected() {
     // Where coarser meshes are known, the contact set that they guess may be exact; 25 cells have none.
     let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [25, 25], Pattern::Right).unwrap();
     let problem = exact(Case::Circle, &[]).problem().unwrap();
-    let d = Discretization::new(&problem, &mesh).unwrap();
+    let d = Discretization::new(&problem, mesh.clone()).unwrap();
     let options = SolverOptions { max_iterations: Some(1), ..SolverOptions::default() };
     let stopped = ActiveSet.solve(&d, &options).expect("it runs");
     assert_eq!((stopped.statistics.status, stopped.statistics.iterations), (Status::IterationLimit, 1));
@@ -212,7 +213,7 @@ fn the_active_set_stopped_early_is_rejected() {
 fn options_out_of_range_are_refused() {
     let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [2, 2], Pattern::Right).unwrap();
     let problem = exact(Case::Circle, &[]).problem().unwrap();
-    let d = Discretization::new(&problem, &mesh).unwrap();
+    let d = Discretization::new(&problem, mesh.clone()).unwrap();
     let with = |options: SolverOptions| solvers()[0].solve(&d, &options).map(|_| ());
     assert!(with(SolverOptions::default()).is_ok());
     for tolerance in [0.0, 1.0, -1e-8, f64::NAN] {

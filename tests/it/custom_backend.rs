@@ -17,7 +17,7 @@ use crate::common::{TOLERANCE, distance, exact, solve, solvers};
 fn a_third_backend_is_certified_and_agrees_with_the_others() {
     let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [12, 12], Pattern::Right).unwrap();
     let problem = exact(Case::Circle, &[]).problem().unwrap();
-    let d = Discretization::new(&problem, &mesh).unwrap();
+    let d = Discretization::new(&problem, mesh.clone()).unwrap();
     let mut own = QpSolver::new(example::MethodOfMultipliers { penalty: 100.0 });
     assert_eq!(own.name(), "method-of-multipliers");
 
@@ -36,7 +36,7 @@ fn a_third_backend_is_certified_and_agrees_with_the_others() {
 fn stopped_early_it_says_so_and_is_rejected() {
     let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [12, 12], Pattern::Right).unwrap();
     let problem = exact(Case::Circle, &[]).problem().unwrap();
-    let d = Discretization::new(&problem, &mesh).unwrap();
+    let d = Discretization::new(&problem, mesh.clone()).unwrap();
     let options = SolverOptions { polish: false, max_iterations: Some(1), ..SolverOptions::default() };
     let stopped =
         QpSolver::new(example::MethodOfMultipliers { penalty: 1.0 }).solve(&d, &options).expect("it runs");

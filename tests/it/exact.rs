@@ -34,7 +34,7 @@ fn nodal_error(mesh: &Mesh, exact: &ExactSolution, displacement: &[Vec<f64>; 2])
 /// Certified and polished solutions of all backends.
 fn solutions(exact: &ExactSolution, mesh: &Mesh) -> Vec<ContactSolution> {
     let problem = exact.problem().expect("a case has valid data");
-    let d = Discretization::new(&problem, mesh).expect("the data are finite");
+    let d = Discretization::new(&problem, mesh.clone()).expect("the data are finite");
     let solve = |solver: &mut Box<dyn ContactSolver>| {
         certify(&d, solve(solver.as_mut(), &d, true), TOLERANCE).expect("certified")
     };
@@ -92,7 +92,7 @@ fn an_interior_point_answer_is_not_exact_before_the_polish() {
     println!("backend  cells  polish  error of u  error of lambda");
     for cells in [8, 32, 64] {
         let mesh = unit_square(cells);
-        let d = Discretization::new(&problem, &mesh).unwrap();
+        let d = Discretization::new(&problem, mesh.clone()).unwrap();
         for mut solver in solvers() {
             for polish in [false, true] {
                 let candidate = solve(solver.as_mut(), &d, polish);

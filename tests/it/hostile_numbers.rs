@@ -22,8 +22,8 @@ const AGREED: f64 = 1e-6;
 const LONGEST_MESSAGE: usize = 300;
 
 impl Hostile {
-    fn discretize(&self) -> Discretization<'_> {
-        Discretization::new(&self.problem, &self.mesh)
+    fn discretize(&self) -> Discretization {
+        Discretization::new(&self.problem, self.mesh.clone())
             .unwrap_or_else(|error| panic!("{}: {error}", self.name))
     }
 
@@ -108,7 +108,8 @@ fn all_pictures_can_be_drawn() {
 #[test]
 fn what_cannot_be_computed_with_is_refused_in_one_line_with_the_remedy() {
     for (hostile, says) in refused() {
-        let error = Discretization::new(&hostile.problem, &hostile.mesh).map(|_| ()).expect_err(hostile.name);
+        let error =
+            Discretization::new(&hostile.problem, hostile.mesh.clone()).map(|_| ()).expect_err(hostile.name);
         let message = error.to_string();
         for word in says {
             assert!(message.contains(word), "{}: {word:?} is not in {message:?}", hostile.name);

@@ -32,7 +32,7 @@ fn plate() -> (CaseFile, Mesh) {
 #[test]
 fn backends_agree_on_displacements_action_and_contact() {
     let (case, mesh) = plate();
-    let d = Discretization::new(&case.problem, &mesh).unwrap();
+    let d = Discretization::new(&case.problem, mesh.clone()).unwrap();
     let range = |u: &[f64]| u.iter().copied().fold(0.0, f64::max) - u.iter().copied().fold(0.0, f64::min);
     let solutions: Vec<_> = solvers()
         .into_iter()

@@ -69,7 +69,7 @@ fn constant(cells: usize, scale: impl Fn(usize) -> f64) -> f64 {
     let mut state = 2009;
     let ratios = (0..20).map(|_| {
         let data = Data::draw(&mut state);
-        let d = Discretization::new(&data.problem(), &mesh).unwrap();
+        let d = Discretization::new(&data.problem(), mesh.clone()).unwrap();
         let candidate = ActiveSet.solve(&d, &SolverOptions::default()).expect("it runs");
         let solution = certify(&d, candidate, TOLERANCE).expect("certified");
         scale(cells) * solution_norm(&d, &solution) / data.norm()

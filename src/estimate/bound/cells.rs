@@ -18,7 +18,7 @@ const OTHER: f64 = 7.0 / 108.0;
 
 /// What the bound is made from.
 pub(super) struct Cells<'a> {
-    pub(super) d: &'a Discretization<'a>,
+    pub(super) d: &'a Discretization,
     pub(super) displacement: &'a [Vec<f64>; 2],
     /// `lt` over vertices.
     pub(super) lambda: &'a [f64],

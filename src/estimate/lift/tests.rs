@@ -31,7 +31,7 @@ fn at_rest() -> ContactProblem {
 }
 
 fn norm_on(mesh: &Mesh, refinements: usize, rho: fn([f64; 2]) -> f64) -> DualNorm {
-    let d = Discretization::new(&at_rest(), mesh).unwrap();
+    let d = Discretization::new(&at_rest(), mesh.clone()).unwrap();
     let sub = SubTriangulation::new(mesh).unwrap();
     dual_norm(&d, &sub, &plain(), refinements, |_, point| rho(point)).unwrap()
 }
@@ -89,7 +89,7 @@ fn the_iteration_agrees_with_a_direct_solve() {
 fn functionals_are_restricted_to_what_they_are_on_the_coarse_mesh() {
     let rho = |_: usize, [x, y]: [f64; 2]| 1.0 + x * x - 3.0 * y;
     let mesh = irregular(4);
-    let d = Discretization::new(&at_rest(), &mesh).unwrap();
+    let d = Discretization::new(&at_rest(), mesh.clone()).unwrap();
     let sub = SubTriangulation::new(&mesh).unwrap();
     let (spaces, finest) = Multigrid::new(&d, &sub, 1).unwrap();
     let [fine, change] = functionals(&finest, &plain(), rho);
@@ -115,7 +115,7 @@ fn with_solution<T>(
     let ([mu1, mu2], [f1, f2]) = (exact.tension(), exact.load_functions());
     let problem = ContactProblem::builder().tension(mu1, mu2).load(f1, f2).height(exact.height_function());
     let mesh = irregular(cells);
-    let d = Discretization::new(&problem.build().unwrap(), &mesh).unwrap();
+    let d = Discretization::new(&problem.build().unwrap(), mesh.clone()).unwrap();
     let candidate = ActiveSet.solve(&d, &SolverOptions::default()).unwrap();
     let solution = certify(&d, candidate, 1e-8).unwrap();
     f(&d, &SubTriangulation::new(&mesh).unwrap(), &exact, &solution)
@@ -154,7 +154,7 @@ fn figures(
 #[test]
 fn a_lift_on_the_mesh_itself_is_blind() {
     let mesh = irregular(6);
-    let d = Discretization::new(&at_rest(), &mesh).unwrap();
+    let d = Discretization::new(&at_rest(), mesh.clone()).unwrap();
     let sub = SubTriangulation::new(&mesh).unwrap();
     let rho = |t: usize, point: [f64; 2]| {
         let corners = mesh.corners(sub.triangle_of(t));

@@ -14,17 +14,17 @@ const ROUNDING: f64 = 1e-9;
 const SEEN: f64 = 1e-2;
 
 /// The problem with the element means `f_ih` in place of `f_i`.
-struct MeanLoads<'m> {
-    d: Discretization<'m>,
+struct MeanLoads {
+    d: Discretization,
     /// `f_ih` on the triangles.
     means: [Vec<f64>; 2],
     /// `int_K f_ih phi_a = |K| f_ih / 3`.
     integrals: [Vec<[f64; 3]>; 2],
 }
 
-impl<'m> MeanLoads<'m> {
-    fn new(problem: &ContactProblem, mesh: &'m Mesh) -> Self {
-        let mut d = Discretization::new(problem, mesh).unwrap();
+impl MeanLoads {
+    fn new(problem: &ContactProblem, mesh: &Mesh) -> Self {
+        let mut d = Discretization::new(problem, mesh.clone()).unwrap();
         let means = [0, 1].map(|i| element_means(mesh, &problem.load()[i]).unwrap());
         let integrals = [0, 1].map(|i: usize| {
             let third = |k: usize| [means[i][k] * mesh.triangle_area(k) / 3.0; 3];
@@ -95,7 +95,7 @@ fn the_divergence_is_the_mean_load_and_the_action() {
 fn residuals_have_the_mean_zero_on_every_triangle_for_any_load() {
     let problem = cubic_problem();
     for (name, mesh) in meshes() {
-        let d = Discretization::new(&problem, &mesh).unwrap();
+        let d = Discretization::new(&problem, mesh.clone()).unwrap();
         let sub = SubTriangulation::new(&mesh).unwrap();
         let solution = solve(&d);
         let means = [0, 1].map(|i| element_means(&mesh, &problem.load()[i]).unwrap());
@@ -119,7 +119,7 @@ fn residuals_have_the_mean_zero_on_every_triangle_for_any_load() {
 fn the_share_of_a_wedge_is_the_load_weighted_by_the_hat_function() {
     let problem = cubic_problem();
     let mesh = crate::mesh::samples::irregular(6);
-    let d = Discretization::new(&problem, &mesh).unwrap();
+    let d = Discretization::new(&problem, mesh.clone()).unwrap();
     let sub = SubTriangulation::new(&mesh).unwrap();
     let solution = solve(&d);
     let reconstructor = Reconstructor::new(&d, &sub, loads(&problem, &mesh));

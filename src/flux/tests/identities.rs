@@ -15,7 +15,7 @@ const SEEN: f64 = 1e-6;
 /// Solves the cubic problem on `mesh` and hands over the fluxes of one kind.
 fn with_fluxes(mesh: &Mesh, kind: Reconstruction, check: impl Fn(Reconstructed)) {
     let problem = cubic_problem();
-    let d = Discretization::new(&problem, mesh).unwrap();
+    let d = Discretization::new(&problem, mesh.clone()).unwrap();
     let sub = SubTriangulation::new(mesh).unwrap();
     let solution = solve(&d);
     assert!(touches_in_part(&d, &solution));

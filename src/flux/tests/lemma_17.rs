@@ -68,7 +68,7 @@ fn compare(d: &Discretization, [left, right]: &[Vec<f64>; 2]) -> [f64; 2] {
 fn lemma_17_with_loads_that_oscillate() {
     let problem = cubic_problem();
     for (name, mesh) in meshes() {
-        let d = Discretization::new(&problem, &mesh).unwrap();
+        let d = Discretization::new(&problem, mesh.clone()).unwrap();
         let sub = SubTriangulation::new(&mesh).unwrap();
         let solution = solve(&d);
         assert!(touches_in_part(&d, &solution), "{name}");
@@ -95,7 +95,7 @@ fn lemma_17_against_an_exact_solution() {
     let exact = Case::Disk.solution(&BTreeMap::new()).unwrap();
     let problem: ContactProblem = exact.problem().unwrap();
     let mesh = disk([0.0, 0.0], 1.0, 9).unwrap();
-    let d = Discretization::new(&problem, &mesh).unwrap();
+    let d = Discretization::new(&problem, mesh.clone()).unwrap();
     let sub = SubTriangulation::new(&mesh).unwrap();
     let solution = solve(&d);
     assert!(touches_in_part(&d, &solution));
@@ -124,7 +124,7 @@ fn energy_splits_into_sum_and_gap() {
     let mut random = Random::new(7);
     for (mu1, mu2) in [(1.0, 3.0), (1.0, 1.0), (1e-3, 50.0)] {
         let problem = ContactProblem::builder().tension(mu1, mu2).build().unwrap();
-        let d = Discretization::new(&problem, &mesh).unwrap();
+        let d = Discretization::new(&problem, mesh.clone()).unwrap();
         let square = |v: &[f64]| (0..v.len()).map(|a| v[a] * d.stiffness_row(a, |b| v[b])).sum::<f64>();
         let [u1, u2] =
             [(); 2].map(|()| (0..mesh.points().len()).map(|_| random.between(-1.0, 1.0)).collect::<Vec<_>>());

@@ -64,7 +64,7 @@ proptest! {
 
     #[test]
     fn solutions_have_fluxes_with_all_identities(mesh in prop_oneof![jittered(), polygonal()], problem in data()) {
-        let d = Discretization::new(&problem, &mesh).unwrap();
+        let d = Discretization::new(&problem, mesh.clone()).unwrap();
         let sub = SubTriangulation::new(&mesh).unwrap();
         let solution = solve(&d);
         for kind in Reconstruction::ALL {
@@ -82,7 +82,7 @@ proptest! {
         problem in data(),
         seed in any::<u64>(),
     ) {
-        let d = Discretization::new(&problem, &mesh).unwrap();
+        let d = Discretization::new(&problem, mesh.clone()).unwrap();
         let sub = SubTriangulation::new(&mesh).unwrap();
         let mut random = crate::mesh::samples::Random::new(seed);
         let scale = d.scales().displacement;

@@ -79,7 +79,7 @@ pub(super) struct Reconstructed<'a> {
 
 impl<'a> Reconstructed<'a> {
     pub(super) fn new(
-        d: &'a Discretization<'a>,
+        d: &'a Discretization,
         sub: &'a SubTriangulation,
         load: [Vec<[f64; 3]>; 2],
         solution: &'a ContactSolution,

@@ -3,6 +3,8 @@
 #[cfg(test)]
 mod tests;
 
+use std::sync::Arc;
+
 use super::circle::Circle;
 use crate::geometry::distance_sq;
 use crate::mesh::check::{Sense, resolution, sense};
@@ -25,7 +27,7 @@ const RESOLVED: f64 = 100.0;
 /// on the first mesh, as here: Karkulik, Pavlicek, Praetorius, Constr. Approx. 38 (2013) 213.
 #[derive(Debug, Clone)]
 pub struct Bisection {
-    mesh: Mesh,
+    mesh: Arc<Mesh>,
     /// For each triangle the corner at which its refinement edge starts; the next corner is the end.
     refinement_edge: Vec<u8>,
     /// For each triangle the one of the mesh before the last step in which it lies.
@@ -41,7 +43,8 @@ impl Bisection {
     ///
     /// The refinement edge of a triangle is its longest edge; of several, the one with the largest vertex numbers, so that
     /// the two triangles at an edge do not disagree about the order of edges.
-    pub fn new(mesh: Mesh) -> Self {
+    pub fn new(mesh: impl Into<Arc<Mesh>>) -> Self {
+        let mesh: Arc<Mesh> = mesh.into();
         let longest = |corners: &[usize; 3]| {
             let key = |&i: &u8| {
                 let [a, b] = [corners[usize::from(i)], corners[(usize::from(i) + 1) % 3]];
@@ -59,12 +62,12 @@ impl Bisection {
 
     /// Bisections of a mesh of `domain`: on a disk, new vertices on the boundary are moved to its circle. Otherwise as
     /// [`Bisection::new`].
-    pub fn of_domain(mesh: Mesh, domain: &Domain) -> Self {
+    pub fn of_domain(mesh: impl Into<Arc<Mesh>>, domain: &Domain) -> Self {
         Self { circle: Circle::of_domain(domain), ..Self::new(mesh) }
     }
 
     /// The current mesh.
-    pub fn mesh(&self) -> &Mesh {
+    pub fn mesh(&self) -> &Arc<Mesh> {
         &self.mesh
     }
 
@@ -113,7 +116,7 @@ impl Bisection {
         let ancestry = self.mesh.ancestry_of_refinement(&parents);
         let mesh = Mesh { points, triangles, kind, ancestry };
         // On a polygon the new mesh covers exactly what the old one did; a moved boundary may meet another one.
-        self.mesh = if self.circle.is_some() { mesh.checked()? } else { mesh };
+        self.mesh = Arc::new(if self.circle.is_some() { mesh.checked()? } else { mesh });
         self.refinement_edge = refinement_edge;
         self.origin = origin;
         Ok(parents)

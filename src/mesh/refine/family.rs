@@ -1,5 +1,7 @@
 //! A coarse mesh and the finer ones that follow its domain.
 
+use std::sync::Arc;
+
 use super::circle::Circle;
 use crate::mesh::{Mesh, MeshError, Refinement};
 use crate::problem::Domain;
@@ -7,7 +9,7 @@ use crate::problem::Domain;
 /// A mesh that can be refined again and again, the finer ones following a curved boundary or a grading.
 #[derive(Debug, Clone)]
 pub struct MeshFamily {
-    mesh: Mesh,
+    mesh: Arc<Mesh>,
     shape: Shape,
 }
 
@@ -25,13 +27,13 @@ enum Shape {
 impl MeshFamily {
     /// Refinements that keep the polygon that `mesh` covers.
     pub fn polygonal(mesh: Mesh) -> Self {
-        Self { mesh, shape: Shape::Polygon }
+        Self { mesh: Arc::new(mesh), shape: Shape::Polygon }
     }
 
     /// Refinements of a mesh of `domain`: those of a disk follow its circle.
     pub fn of_domain(mesh: Mesh, domain: &Domain) -> Self {
         let shape = Circle::of_domain(domain).map_or(Shape::Polygon, Shape::Disk);
-        Self { mesh, shape }
+        Self { mesh: Arc::new(mesh), shape }
     }
 
     /// Refinements graded towards `point`, as the coarse mesh: see [`Mesh::graded`].
@@ -39,12 +41,12 @@ impl MeshFamily {
     /// # Errors
     /// As [`Mesh::graded`].
     pub fn graded(uniform: Mesh, point: [f64; 2], exponent: f64) -> Result<Self, MeshError> {
-        let mesh = uniform.graded(point, exponent)?;
+        let mesh = Arc::new(uniform.graded(point, exponent)?);
         Ok(Self { mesh, shape: Shape::Graded { uniform, point, exponent } })
     }
 
     /// The current mesh.
-    pub fn mesh(&self) -> &Mesh {
+    pub fn mesh(&self) -> &Arc<Mesh> {
         &self.mesh
     }
 
@@ -70,7 +72,7 @@ impl MeshFamily {
                 (parents, graded)
             }
         };
-        self.mesh = mesh;
+        self.mesh = Arc::new(mesh);
         Ok(parents)
     }
 }

@@ -13,7 +13,7 @@ fn problem(f1: f64, f2: f64) -> ContactProblem {
 }
 
 fn qp(mesh: &Mesh, problem: &ContactProblem) -> QpProblem {
-    contact_qp(&Discretization::new(problem, mesh).unwrap())
+    contact_qp(&Discretization::new(problem, mesh.clone()).unwrap())
 }
 
 fn dense(matrix: &CsMat<f64>) -> Vec<Vec<f64>> {
@@ -76,7 +76,7 @@ fn three_interior_vertices_by_hand() {
 #[test]
 fn planes_are_at_rest() {
     let mesh = irregular(5);
-    let d = Discretization::new(&problem(0.0, 0.0), &mesh).unwrap();
+    let d = Discretization::new(&problem(0.0, 0.0), mesh.clone()).unwrap();
     let qp = contact_qp(&d);
     let n = d.interior().len();
     let mut x = vec![0.0; 2 * n];
@@ -99,7 +99,7 @@ fn planes_are_at_rest() {
 #[test]
 fn the_gradient_is_the_imbalance() {
     let mesh = irregular(4);
-    let d = Discretization::new(&problem(-4.0, 8.0), &mesh).unwrap();
+    let d = Discretization::new(&problem(-4.0, 8.0), mesh.clone()).unwrap();
     let qp = contact_qp(&d);
     let n = d.interior().len();
     let x: Vec<f64> = (0..2 * n).map(|k| (k as f64).cos()).collect();
@@ -114,7 +114,7 @@ fn the_gradient_is_the_imbalance() {
 #[test]
 fn scales_are_those_of_the_data() {
     let mesh = square(4);
-    let d = Discretization::new(&problem(-4.0, 8.0), &mesh).unwrap();
+    let d = Discretization::new(&problem(-4.0, 8.0), mesh.clone()).unwrap();
     let (scales, qp) = (d.scales(), contact_qp(&d));
     assert_eq!(qp.primal_scale(), scales.displacement);
     assert_eq!(qp.dual_scale(), scales.force_density * scales.dual_area);

@@ -16,7 +16,7 @@ fn with_program(check: impl FnOnce(&Mesh, &Discretization, &QpProblem)) {
     let load = Function::from_fn(|x, y| (x + 2.0 * y).exp());
     let problem =
         ContactProblem::builder().tension(1.1, 0.7).load(load, -3.3).height(height).build().unwrap();
-    let d = Discretization::new(&problem, &mesh).unwrap();
+    let d = Discretization::new(&problem, mesh.clone()).unwrap();
     check(&mesh, &d, &contact_qp(&d));
 }
 

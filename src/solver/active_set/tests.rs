@@ -74,7 +74,7 @@ fn few_factorisations_are_needed_on_each_level() {
     let load = Function::from_fn(|x: f64, y: f64| 30.0 * (12.566 * x).sin() * (9.425 * y).sin());
     let problem = ContactProblem::builder().tension(1.0, 1.0).load(-10.0, load).height(0.05).build().unwrap();
     let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [128; 2], Pattern::Right).unwrap();
-    let d = Discretization::new(&problem, &mesh).unwrap();
+    let d = Discretization::new(&problem, mesh.clone()).unwrap();
     let found = ActiveSet.solve(&d, &SolverOptions::default()).unwrap();
     let steps = &found.statistics.level_iterations;
     assert_eq!(steps.len(), 7);
@@ -92,7 +92,7 @@ fn biactive_data_and_obtuse_triangles_are_solved() {
         let parameters = [("q".to_string(), q)].into_iter().collect();
         let problem = Case::FullContact.solution(&parameters).unwrap().problem().unwrap();
         for mesh in [rectangle([0.0, 0.0], [1.0, 1.0], [24; 2], Pattern::Right).unwrap(), irregular(16)] {
-            let d = Discretization::new(&problem, &mesh).unwrap();
+            let d = Discretization::new(&problem, mesh.clone()).unwrap();
             let found = ActiveSet.solve(&d, &SolverOptions::default()).unwrap();
             assert_eq!(found.statistics.status, Status::Solved);
             assert!(certify(&d, found, TOLERANCE).is_ok());
@@ -103,7 +103,7 @@ fn biactive_data_and_obtuse_triangles_are_solved() {
     let sheared = flat.points().iter().map(|&[x, y]| [x + 3.0 * y, y]).collect();
     let mesh = Mesh::new(sheared, flat.triangles().to_vec()).unwrap();
     let problem = ContactProblem::builder().tension(1.0, 2.0).load(-30.0, 10.0).height(0.1).build().unwrap();
-    let d = Discretization::new(&problem, &mesh).unwrap();
+    let d = Discretization::new(&problem, mesh.clone()).unwrap();
     let positive = d.stiffness().iter().filter(|&(&k, (i, j))| i != j && k > 0.1).count();
     assert!(positive > 100, "K is no M-matrix");
     let found = ActiveSet.solve(&d, &SolverOptions::default()).unwrap();
@@ -119,7 +119,7 @@ fn bisected_at_the_corner(steps: usize) -> Mesh {
         let marked: Vec<usize> = (0..mesh.triangles().len()).filter(at_corner).collect();
         bisection.refine(&marked).unwrap();
     }
-    bisection.mesh().clone()
+    Mesh::clone(bisection.mesh())
 }
 
 #[test]
@@ -128,7 +128,7 @@ fn contact_is_found_at_the_tip_of_a_deep_mesh() {
     let with_ancestry = bisected_at_the_corner(DEEP);
     let without = Mesh::new(with_ancestry.points().to_vec(), with_ancestry.triangles().to_vec()).unwrap();
     for mesh in [with_ancestry, without] {
-        let d = Discretization::new(&problem, &mesh).unwrap();
+        let d = Discretization::new(&problem, mesh.clone()).unwrap();
         let found = ActiveSet.solve(&d, &SolverOptions::default()).unwrap();
         let solution = certify(&d, found, TOLERANCE).expect("certified");
         assert!(d.interior().iter().all(|&a| solution.contact()[a]), "the load closes the gap everywhere");

@@ -68,7 +68,7 @@ fn it_finds_what_the_active_set_method_finds() {
     for mesh in meshes() {
         for (tension, height) in [([1.0, 1.0], 0.05), ([1.0, 300.0], 0.0), ([7.0, 0.2], 0.3)] {
             let problem = problem(tension, height);
-            let d = Discretization::new(&problem, &mesh).unwrap();
+            let d = Discretization::new(&problem, mesh.clone()).unwrap();
             let found = solve_by(&mut Multigrid, &d, &options());
             assert!(falls(&found.statistics.energies), "{:?}", found.statistics.energies);
             let found = certify(&d, found, TOLERANCE).unwrap();
@@ -87,7 +87,7 @@ fn cycles_do_not_depend_on_the_size_of_the_mesh() {
     for cells in [16, 32, 64, 128] {
         for pattern in [Pattern::Right, Pattern::Crossed] {
             let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [cells; 2], pattern).unwrap();
-            let d = Discretization::new(&problem, &mesh).unwrap();
+            let d = Discretization::new(&problem, mesh.clone()).unwrap();
             let statistics = solve_by(&mut Multigrid, &d, &options()).statistics;
             assert_eq!(statistics.status, Status::Solved);
             assert!(statistics.iterations <= CYCLES, "{cells} cells: {}", statistics.iterations);
@@ -97,7 +97,7 @@ fn cycles_do_not_depend_on_the_size_of_the_mesh() {
     let biactive = Case::Annulus.solution(&BTreeMap::new()).unwrap().problem().unwrap();
     for cells in [32, 64, 128, 256] {
         let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [cells; 2], Pattern::Right).unwrap();
-        let d = Discretization::new(&biactive, &mesh).unwrap();
+        let d = Discretization::new(&biactive, mesh.clone()).unwrap();
         let iterations = solve_by(&mut Multigrid, &d, &options()).statistics.iterations;
         assert!(iterations <= CYCLES, "annulus, {cells} cells: {iterations}");
     }
@@ -105,14 +105,14 @@ fn cycles_do_not_depend_on_the_size_of_the_mesh() {
     let ring = Case::LShape.solution(&BTreeMap::new()).unwrap().problem().unwrap();
     for cells in [64, 128, 256] {
         let mesh = l_shape(2.0, cells, Pattern::Right).unwrap();
-        let d = Discretization::new(&ring, &mesh).unwrap();
+        let d = Discretization::new(&ring, mesh.clone()).unwrap();
         let statistics = solve_by(&mut Multigrid, &d, &options()).statistics;
         assert_eq!(statistics.status, Status::Solved);
         assert!(statistics.iterations <= CORNER_CYCLES, "ring, {cells} cells: {}", statistics.iterations);
     }
     // Stopped early, it says so and is not certified.
     let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [32; 2], Pattern::Right).unwrap();
-    let d = Discretization::new(&problem, &mesh).unwrap();
+    let d = Discretization::new(&problem, mesh.clone()).unwrap();
     let stopped = solve_by(&mut Multigrid, &d, &SolverOptions { max_iterations: Some(2), ..options() });
     assert_eq!((stopped.statistics.status, stopped.statistics.iterations), (Status::IterationLimit, 2));
     assert!(certify(&d, stopped, TOLERANCE).is_err());
@@ -135,7 +135,7 @@ fn a_change_of_the_energy_is_known_where_the_energies_are_not() {
     const SUM_ROUNDING: f64 = 1e-10;
     let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [16; 2], Pattern::Right).unwrap();
     let problem = problem([1.0, 1.0], 0.05);
-    let hierarchy = Hierarchy::new(&Discretization::new(&problem, &mesh).unwrap());
+    let hierarchy = Hierarchy::new(&Discretization::new(&problem, mesh.clone()).unwrap());
     let level = &hierarchy.levels()[hierarchy.finest()];
     let mut random = Random::new(3);
     let mut vector = || -> Vec<f64> {
@@ -164,7 +164,7 @@ fn a_change_of_the_energy_is_known_where_the_energies_are_not() {
 fn a_warm_start_needs_no_cycles_from_its_own_answer() {
     let problem = problem([1.0, 2.0], 0.05);
     let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [32; 2], Pattern::Right).unwrap();
-    let d = Discretization::new(&problem, &mesh).unwrap();
+    let d = Discretization::new(&problem, mesh.clone()).unwrap();
     let cold = solve_by(&mut Multigrid, &d, &options());
     let again = SolverOptions { warm_start: Some(cold.clone().into()), ..options() };
     assert!(cold.statistics.iterations > 3);
@@ -176,7 +176,7 @@ fn a_warm_start_needs_no_cycles_from_its_own_answer() {
 fn on_stretched_triangles_the_levels_are_algebraic() {
     let mesh = rectangle([0.0, 0.0], [1.0, 0.01], [64; 2], Pattern::Right).unwrap();
     let problem = ContactProblem::builder().tension(1.0, 3.0).load(-1.5e5, 1e5).height(0.1).build().unwrap();
-    let d = Discretization::new(&problem, &mesh).unwrap();
+    let d = Discretization::new(&problem, mesh.clone()).unwrap();
     let status = |levels| {
         let candidate = Multigrid.solve_on(levels, &d, &options(), Instant::now()).expect("it runs");
         candidate.statistics.status
@@ -191,7 +191,7 @@ fn on_stretched_triangles_the_levels_are_algebraic() {
 #[test]
 fn a_slow_pace_is_kept_and_none_is_given_up() {
     let mesh = rectangle([0.0, 0.0], [1.55, 0.5], [2, 8], Pattern::Crossed).unwrap();
-    let d = Discretization::new(&problem([1.0, 1.0], 0.0), &mesh).unwrap();
+    let d = Discretization::new(&problem([1.0, 1.0], 0.0), mesh.clone()).unwrap();
     let slow = Multigrid.solve_on(Hierarchy::new, &d, &options(), Instant::now()).expect("it runs");
     assert_eq!(slow.statistics.status, Status::Solved);
     assert!(slow.statistics.iterations > 2 * CYCLES, "it is slow: {}", slow.statistics.iterations);
@@ -205,7 +205,7 @@ fn a_slow_pace_is_kept_and_none_is_given_up() {
 fn results_do_not_depend_on_the_number_of_threads() {
     let problem = problem([1.0, 2.0], 0.05);
     let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [200, 120], Pattern::Right).unwrap();
-    let d = Discretization::new(&problem, &mesh).unwrap();
+    let d = Discretization::new(&problem, mesh.clone()).unwrap();
     let [one, four] = [1, 4].map(|threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| solve_by(&mut Multigrid, &d, &options()))
@@ -268,7 +268,7 @@ fn truncated_matrices_follow_every_change_of_the_contact_set() {
     let problem = problem([1.0, 1.0], 0.05);
     let square = rectangle([0.0, 0.0], [1.0, 1.0], [16; 2], Pattern::Right).unwrap();
     for mesh in [square, irregular(4).refine().mesh, irregular(13)] {
-        let d = Discretization::new(&problem, &mesh).unwrap();
+        let d = Discretization::new(&problem, mesh.clone()).unwrap();
         let hierarchy = Hierarchy::new(&d);
         let mut truncation = Truncation::new(&hierarchy);
         truncation.reset(hierarchy.finest());
@@ -292,7 +292,7 @@ fn truncated_rows_have_no_part_in_a_stencil() {
     /// Rounding of products of size ten.
     const ROUNDING: f64 = 1e-12;
     let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [128; 2], Pattern::Right).unwrap();
-    let d = Discretization::new(&problem([1.0, 1.0], 0.05), &mesh).unwrap();
+    let d = Discretization::new(&problem([1.0, 1.0], 0.05), mesh.clone()).unwrap();
     let hierarchy = Hierarchy::new(&d);
     let finest = hierarchy.finest();
     let mut truncation = Truncation::new(&hierarchy);
@@ -341,7 +341,7 @@ proptest! {
         let f1 = Function::from_fn(move |x: f64, y: f64| loads[0] + loads[1] * (7.0 * x * y).sin());
         let f2 = Function::from_fn(move |x: f64, y: f64| loads[2] + loads[3] * (5.0 * x - 3.0 * y).cos());
         let problem = ContactProblem::builder().tension(1.0, stiff).load(f1, f2).height(height).build().unwrap();
-        let d = Discretization::new(&problem, &mesh).unwrap();
+        let d = Discretization::new(&problem, mesh.clone()).unwrap();
         let found = solve_by(&mut Multigrid, &d, &options());
         prop_assert!(falls(&found.statistics.energies), "{:?}", found.statistics.energies);
         prop_assert!(certify(&d, found, TOLERANCE).is_ok());

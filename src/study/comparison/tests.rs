@@ -22,8 +22,8 @@ fn meshes() -> [Mesh; 2] {
     [4, 8].map(|n| square_mesh(n).expect("a valid size"))
 }
 
-fn discretizations<'m>(problem: &ContactProblem, meshes: &'m [Mesh]) -> Vec<Discretization<'m>> {
-    meshes.iter().map(|mesh| Discretization::new(problem, mesh).expect("valid data")).collect()
+fn discretizations<'m>(problem: &ContactProblem, meshes: &'m [Mesh]) -> Vec<Discretization> {
+    meshes.iter().map(|mesh| Discretization::new(problem, mesh.clone()).expect("valid data")).collect()
 }
 
 /// Runs a solver on all meshes of the built-in family.

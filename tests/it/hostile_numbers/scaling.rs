@@ -47,7 +47,7 @@ impl Scaling {
 /// `[u1, u2, lambda]` over vertices by every solver.
 fn solutions(scaling: Scaling, of_size_one: &Mesh) -> Vec<(String, [Vec<f64>; 3])> {
     let mesh = scaling.mesh(of_size_one);
-    let d = Discretization::new(&scaling.problem(), &mesh).expect("it can be computed with");
+    let d = Discretization::new(&scaling.problem(), mesh.clone()).expect("it can be computed with");
     let solve = |mut solver: Box<dyn membrane_contact::solver::ContactSolver>| {
         let solution = certify(&d, solve(&mut *solver, &d, true), TOLERANCE).expect("certified");
         let [u1, u2] = solution.displacement().clone();

@@ -66,7 +66,7 @@ fn goes_with_the_domain(draw: &Draw, motion: Motion, factor: f64, mesh: &MeshDra
     let moved = Mesh::new(points, mesh.triangles().to_vec()).map_err(|error| error.to_string())?;
     let [f1, f2] = draw.load.map(|load| motion.carry(&load, factor));
     let problem = draw.problem_with([f1, f2], motion.carry(&draw.height, 1.0))?;
-    let d_moved = Discretization::new(&problem, &moved).map_err(|error| error.to_string())?;
+    let d_moved = Discretization::new(&problem, moved.clone()).map_err(|error| error.to_string())?;
     let mut found = Fields::from(&solve(&d_moved)?);
     found.lambda.iter_mut().for_each(|lambda| *lambda /= factor);
     expected.compare(&found, &d, EXACT)

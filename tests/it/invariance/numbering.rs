@@ -17,7 +17,7 @@ fn survives(draw: &Draw, read: impl Fn(&[usize], usize) -> usize) -> Result<(), 
     let number = random.permutation(mesh.points().len());
     let renumbered = renumbered(&mesh, &number, &mut random)?;
     let d_renumbered =
-        Discretization::new(&draw.problem()?, &renumbered).map_err(|error| error.to_string())?;
+        Discretization::new(&draw.problem()?, renumbered.clone()).map_err(|error| error.to_string())?;
     let found = Fields::from(&solve(&d_renumbered)?);
     let at = |a: usize| read(&number, a);
     let vertices = || 0..number.len();

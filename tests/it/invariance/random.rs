@@ -122,8 +122,8 @@ impl Draw {
         problem.map_err(|error| error.to_string())
     }
 
-    pub fn discretize<'m>(&self, mesh: &'m Mesh) -> Result<Discretization<'m>, String> {
-        Discretization::new(&self.problem()?, mesh).map_err(|error| error.to_string())
+    pub fn discretize<'m>(&self, mesh: &'m Mesh) -> Result<Discretization, String> {
+        Discretization::new(&self.problem()?, mesh.clone()).map_err(|error| error.to_string())
     }
 }
 

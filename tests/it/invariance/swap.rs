@@ -25,7 +25,8 @@ fn exchanges(draw: &Draw, sign: f64) -> Result<(), String> {
     let [f1, f2] = draw.load;
     let [mu1, mu2] = draw.tension;
     let exchanged = Draw { tension: [mu2, mu1], load: [f2.times(sign), f1.times(sign)], ..draw };
-    let d_exchanged = Discretization::new(&exchanged.problem()?, &mesh).map_err(|error| error.to_string())?;
+    let d_exchanged =
+        Discretization::new(&exchanged.problem()?, mesh.clone()).map_err(|error| error.to_string())?;
     let found = Fields::from(&solve(&d_exchanged)?);
     let below_height =
         |u: &[f64]| mesh.points().iter().zip(u).map(|(&[x, y], u)| height.at(x, y) - u).collect();

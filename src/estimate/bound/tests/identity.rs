@@ -29,7 +29,7 @@ impl Identity {
     fn new(exact: &ExactSolution, cells: usize) -> Self {
         let problem = problem(exact);
         let mesh = mesh(&exact.domain(), cells);
-        let d = Discretization::new(&problem, &mesh).unwrap();
+        let d = Discretization::new(&problem, mesh.clone()).unwrap();
         let solution = solve(&d);
         let parts = bound(&problem, &exact.domain(), &d, solution.displacement()).parts;
         let sub = SubTriangulation::new(&mesh).unwrap();

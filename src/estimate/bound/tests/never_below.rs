@@ -17,7 +17,7 @@ const ROUNDING: f64 = 1e-10;
 
 fn assert_bounds(name: &str, exact: &ExactSolution, mesh: &Mesh) {
     let problem = problem(exact);
-    let d = Discretization::new(&problem, mesh).unwrap();
+    let d = Discretization::new(&problem, mesh.clone()).unwrap();
     let solution = solve(&d);
     let bound = bound(&problem, &exact.domain(), &d, solution.displacement());
     let error = energy_error(&d, solution.displacement(), exact);
@@ -53,7 +53,7 @@ fn on_a_disk_whose_height_varies() {
     let problem = ContactProblem::builder().tension(2.0, 1.0).height(height).build().unwrap();
     for rings in [4, 8, 16] {
         let mesh = disk([0.0, 0.0], 1.0, rings).unwrap();
-        let d = Discretization::new(&problem, &mesh).unwrap();
+        let d = Discretization::new(&problem, mesh.clone()).unwrap();
         let displacement = solve(&d).displacement().clone();
         let found = bound(&problem, &domain, &d, &displacement);
         let error = (2.0 * seminorm_of_difference_sq(&d, &displacement[0])).sqrt();
@@ -109,7 +109,7 @@ fn on_random_polygons_against_a_finer_solution() {
         let mut random = Random::new(seed);
         let coarse = polygon(&random_polygon(&mut random), &[], 0.25, 20.0).unwrap();
         let problem = random_problem(&mut random);
-        let d = Discretization::new(&problem, &coarse).unwrap();
+        let d = Discretization::new(&problem, coarse.clone()).unwrap();
         let solution = solve(&d);
         let found = ErrorBound::new(&problem, None, &d, solution.displacement()).unwrap().total;
         let first = coarse.refine();
@@ -121,7 +121,7 @@ fn on_random_polygons_against_a_finer_solution() {
                 u.extend(midpoints);
             }
         }
-        let d_fine = Discretization::new(&problem, &second.mesh).unwrap();
+        let d_fine = Discretization::new(&problem, second.mesh.clone()).unwrap();
         let finer = solve(&d_fine);
         for (u, finer) in difference.iter_mut().zip(finer.displacement()) {
             u.iter_mut().zip(finer).for_each(|(u, finer)| *u -= finer);
@@ -144,7 +144,7 @@ fn of_displacements_that_do_not_solve_the_problem() {
     let exact = exact(Case::Circle, &[("mu1", 1.0), ("mu2", 3.0)]);
     let problem = problem(&exact);
     let mesh = mesh(&exact.domain(), 24);
-    let d = Discretization::new(&problem, &mesh).unwrap();
+    let d = Discretization::new(&problem, mesh.clone()).unwrap();
     let loose = SolverOptions { tolerance: 1e-2, polish: false, ..SolverOptions::default() };
     let early = SolverOptions { max_iterations: Some(1), ..SolverOptions::default() };
     let solvers = || -> Vec<Box<dyn ContactSolver>> {
@@ -196,10 +196,10 @@ fn of_membranes_that_pass_through_each_other() {
     let [f1, f2] = exact.load_functions();
     let [mu1, mu2] = exact.tension();
     let apart = ContactProblem::builder().tension(mu1, mu2).load(f1, f2).height(HIGH).build().unwrap();
-    let [mut u1, u2] = solve(&Discretization::new(&apart, &mesh).unwrap()).displacement().clone();
+    let [mut u1, u2] = solve(&Discretization::new(&apart, mesh.clone()).unwrap()).displacement().clone();
     u1.iter_mut().for_each(|u1| *u1 -= HIGH);
     assert!(u1.iter().zip(&u2).any(|(u1, u2)| u1 < u2), "they overlap");
-    let d = Discretization::new(&problem, &mesh).unwrap();
+    let d = Discretization::new(&problem, mesh.clone()).unwrap();
     let displacement = [u1, u2];
     let found = bound(&problem, &exact.domain(), &d, &displacement);
     let error = energy_error(&d, &displacement, &exact);
@@ -215,7 +215,7 @@ fn on_a_disk_up_to_its_circle() {
     let problem = problem(&exact);
     for rings in [8, 32] {
         let mesh = mesh(&exact.domain(), rings);
-        let d = Discretization::new(&problem, &mesh).unwrap();
+        let d = Discretization::new(&problem, mesh.clone()).unwrap();
         let displacement = solve(&d).displacement().clone();
         let found = bound(&problem, &exact.domain(), &d, &displacement);
         let beyond_sq = beyond_the_polygon_sq(&exact, &mesh);

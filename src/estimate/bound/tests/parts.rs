@@ -21,7 +21,7 @@ fn with_load(f: Function) -> ContactProblem {
 }
 
 fn oscillation(problem: &ContactProblem, mesh: &Mesh) -> f64 {
-    let d = Discretization::new(problem, mesh).unwrap();
+    let d = Discretization::new(problem, mesh.clone()).unwrap();
     ErrorBound::new(problem, None, &d, solve(&d).displacement()).unwrap().parts.oscillation
 }
 
@@ -69,7 +69,7 @@ fn the_oscillation_of_an_affine_load_is_exact_and_of_others_a_little_more() {
 fn the_constant_of_friedrichs_is_that_of_the_rectangle() {
     let constant = |mesh: &Mesh, domain: Option<&Domain>| {
         let d_problem = with_load(0.0.into());
-        friedrichs(&Discretization::new(&d_problem, mesh).unwrap(), domain)
+        friedrichs(&Discretization::new(&d_problem, mesh.clone()).unwrap(), domain)
     };
     let unit = square(3);
     assert!((constant(&unit, None) * PI * SQRT_2 - 1.0).abs() < ROUNDING);
@@ -91,7 +91,7 @@ fn the_lift_has_the_seminorm_of_its_gradient() {
     let mesh = Mesh::new([&points[..3], &points[4..]].concat(), renumbered(&triangles)).unwrap();
     let g = |x: f64, y: f64| 1.0 + x * (1.0 - x) + y;
     let problem = ContactProblem::builder().height(Function::from_fn(g)).build().unwrap();
-    let d = Discretization::new(&problem, &mesh).unwrap();
+    let d = Discretization::new(&problem, mesh.clone()).unwrap();
     let around = VertexTriangles::new(mesh.points().len(), mesh.triangles());
     let lambda = vec![2.0; mesh.points().len()];
     let lift = Trace::new(&problem, None, &d, &around).lift(0, &lambda);
@@ -134,7 +134,7 @@ fn the_indicators_add_up_to_the_square_of_the_bound() {
         .build()
         .unwrap();
     let mesh = irregular(12);
-    let d = Discretization::new(&problem, &mesh).unwrap();
+    let d = Discretization::new(&problem, mesh.clone()).unwrap();
     let mut displacement = solve(&d).displacement().clone();
     let defect = |bound: &ErrorBound| bound.indicators.iter().sum::<f64>() / bound.total.powi(2) - 1.0;
     let solved = ErrorBound::new(&problem, None, &d, &displacement).unwrap();
