@@ -22,7 +22,7 @@ fn meshes() -> [Mesh; 2] {
     [4, 8].map(|n| square_mesh(n).expect("a valid size"))
 }
 
-fn discretizations<'m>(problem: &ContactProblem, meshes: &'m [Mesh]) -> Vec<Discretization> {
+fn discretizations(problem: &ContactProblem, meshes: &[Mesh]) -> Vec<Discretization> {
     meshes.iter().map(|mesh| Discretization::new(problem, mesh.clone()).expect("valid data")).collect()
 }
 

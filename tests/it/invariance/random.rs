@@ -122,7 +122,7 @@ impl Draw {
         problem.map_err(|error| error.to_string())
     }
 
-    pub fn discretize<'m>(&self, mesh: &'m Mesh) -> Result<Discretization, String> {
+    pub fn discretize(&self, mesh: &Mesh) -> Result<Discretization, String> {
         Discretization::new(&self.problem()?, mesh.clone()).map_err(|error| error.to_string())
     }
 }
