@@ -1,6 +1,7 @@
 //! The drawing surface: lines, areas and text on a fine grid of pixels, averaged down when encoded.
 
 use ab_glyph::{Font, FontRef, Glyph, PxScale, ScaleFont, point};
+use rayon::prelude::*;
 
 use super::color::{PAPER, Rgb, mix};
 use super::raster;
@@ -49,7 +50,7 @@ impl Canvas {
     pub(crate) fn blend(&mut self, column: usize, row: usize, color: Rgb, share: f64) {
         if column < self.size[0] && row < self.size[1] {
             let pixel = &mut self.pixels[row * self.size[0] + column];
-            *pixel = mix(*pixel, color, share);
+            *pixel = if share < 1.0 { mix(*pixel, color, share) } else { color };
         }
     }
 
@@ -163,6 +164,7 @@ impl Canvas {
         let mut encoder = png::Encoder::new(&mut bytes, width as u32, height as u32);
         encoder.set_color(png::ColorType::Rgb);
         encoder.set_depth(png::BitDepth::Eight);
+        encoder.set_compression(png::Compression::Fast);
         let mut writer = encoder.write_header()?;
         writer.write_image_data(&self.averaged(width, height))?;
         writer.finish()?;
@@ -171,9 +173,9 @@ impl Canvas {
 
     fn averaged(&self, width: usize, height: usize) -> Vec<u8> {
         let count = (FINE * FINE) as u32;
-        let mut bytes = Vec::with_capacity(3 * width * height);
-        for row in 0..height {
-            for column in 0..width {
+        let mut bytes = vec![0; 3 * width * height];
+        bytes.par_chunks_mut(3 * width).enumerate().for_each(|(row, bytes)| {
+            for (column, mean) in bytes.chunks_exact_mut(3).enumerate() {
                 let mut sum = [0u32; 3];
                 for fine_row in FINE * row..FINE * (row + 1) {
                     let start = fine_row * self.size[0] + FINE * column;
@@ -181,9 +183,9 @@ impl Canvas {
                         (0..3).for_each(|k| sum[k] += u32::from(pixel[k]));
                     }
                 }
-                bytes.extend(sum.map(|total| ((total + count / 2) / count) as u8));
+                mean.copy_from_slice(&sum.map(|total| ((total + count / 2) / count) as u8));
             }
-        }
+        });
         bytes
     }
 }

@@ -70,5 +70,5 @@ pub(crate) fn force(place: f64) -> Rgb {
 
 /// `share` of `over` and the rest of `under`.
 pub(crate) fn mix(under: Rgb, over: Rgb, share: f64) -> Rgb {
-    std::array::from_fn(|k| (f64::from(under[k]) * (1.0 - share) + f64::from(over[k]) * share).round() as u8)
+    std::array::from_fn(|k| (f64::from(under[k]) * (1.0 - share) + f64::from(over[k]) * share + 0.5) as u8)
 }

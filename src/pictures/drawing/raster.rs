@@ -21,28 +21,28 @@ pub(crate) fn triangle(
     mut paint: impl FnMut(usize, usize, [f64; 3]),
 ) {
     let Some(gradients) = barycentric_gradients(corners) else { return };
-    let weight = |k: usize, [x, y]: [f64; 2]| {
-        let from = corners[(k + 1) % 3];
-        gradients[k][0] * (x - from[0]) + gradients[k][1] * (y - from[1])
-    };
     let bounds = [0, 1].map(|axis| extent(corners.map(|p| p[axis])));
     let [along, across] = directions(bounds);
+    let slopes = gradients.map(|gradient| gradient[along]);
+    let lengths = slopes.map(|slope| 1.0 / slope);
     for line in pixel_range(bounds[across], size[across]) {
         let middle = line as f64 + 0.5;
+        // On the line each weight is linear, and its zero an end of the span.
+        let starts = [0, 1, 2].map(|k| {
+            let from = corners[(k + 1) % 3];
+            gradients[k][across] * (middle - from[across]) - slopes[k] * from[along]
+        });
         let mut span = bounds[along];
         for k in 0..3 {
-            // On the line the weight is linear, and its zero the end of the span on one side.
-            let slope = gradients[k][along];
-            let start = weight(k, in_order(along, [0.0, middle]));
-            let zero = (ON_EDGE - start) / slope;
-            if slope > 0.0 {
+            let zero = (ON_EDGE - starts[k]) * lengths[k];
+            if slopes[k] > 0.0 {
                 span[0] = span[0].max(zero - SLACK);
-            } else if slope < 0.0 {
+            } else if slopes[k] < 0.0 {
                 span[1] = span[1].min(zero + SLACK);
             }
         }
         for pixel in pixel_range(span, size[along]) {
-            let weights = [0, 1, 2].map(|k| weight(k, in_order(along, [pixel as f64 + 0.5, middle])));
+            let weights = [0, 1, 2].map(|k| starts[k] + slopes[k] * (pixel as f64 + 0.5));
             visited();
             if weights.iter().all(|&weight| weight >= ON_EDGE) {
                 let [column, row] = in_order(along, [pixel, line]);
@@ -92,6 +92,12 @@ pub(crate) fn nearest_corner(weights: [f64; 3]) -> usize {
     if weights[2] > weights[second] { 2 } else { second }
 }
 
+/// The corner of pixels nearest to a point. A mesh whose vertices are moved there keeps no holes, and loses the triangles that
+/// are too thin to be seen: those that remain have at least half a pixel, so that there are not many more than pixels.
+pub(crate) fn on_grid(point: [f64; 2]) -> [f64; 2] {
+    point.map(f64::round)
+}
+
 /// The direction of the lines that are scanned, and that across: as few lines as possible.
 fn directions(bounds: [[f64; 2]; 2]) -> [usize; 2] {
     let [width, height] = bounds.map(|[low, high]| high - low);
@@ -114,10 +120,12 @@ fn grown([low, high]: [f64; 2], by: f64) -> [f64; 2] {
 
 /// The pixels whose centres lie between `low` and `high`, cut off at the edges of the grid.
 fn pixel_range([low, high]: [f64; 2], size: usize) -> Range<usize> {
+    // `ceil` and `floor` are calls of a library, and this is asked of every line of every triangle.
     let limit = size as f64;
-    let first = (low - 0.5).ceil().clamp(0.0, limit) as usize;
-    let end = ((high - 0.5).floor() + 1.0).clamp(0.0, limit) as usize;
-    first..end.max(first)
+    let below = |x: f64| x.clamp(0.0, limit) as usize;
+    let first = below(low - 0.5);
+    let first = if (first as f64) < low - 0.5 { first + 1 } else { first };
+    first..below(high + 0.5).max(first)
 }
 
 /// Tests count the pixels that are looked at.

@@ -58,13 +58,22 @@ impl Layer {
     /// Paints a membrane, shaded, with grid lines and the contact region.
     pub(super) fn surface(&mut self, scene: &Scene, view: &View, style: &Style) {
         let shades = brightness(scene, view, style.membrane);
+        let in_box = |v: usize| view.in_box(scene.place(v), scene.levels(v)[style.membrane]);
+        let project = |v: usize| {
+            let [x, y, nearness] = view.project(in_box(v));
+            (raster::on_grid(self.fine([x, y])), nearness)
+        };
+        let projected: Vec<([f64; 2], f64)> = (0..scene.vertex_count()).map(project).collect();
         let spacing = [0, 1].map(|k| 1.0 / (GRID * view.sides()[k]).round().max(2.0));
         for corners in scene.triangles() {
-            let places = corners.map(|v| view.in_box(scene.place(v), scene.levels(v)[style.membrane]));
-            let gaps = corners.map(|v| scene.levels(v)[0] - scene.levels(v)[1]);
-            let points = places.map(|place| view.project(place));
-            let flat = points.map(|[x, y, _]| self.fine([x, y]));
+            let flat = corners.map(|v| projected[v].0);
             let Some(gradients) = barycentric_gradients(flat) else { continue };
+            let places = corners.map(in_box);
+            if places.iter().all(|place| place[1] < style.from) {
+                continue;
+            }
+            let gaps = corners.map(|v| scene.levels(v)[0] - scene.levels(v)[1]);
+            let nearnesses = corners.map(|v| projected[v].1);
             let steepness = [0, 1].map(|k| {
                 let slope = |axis: usize| (0..3).map(|i| gradients[i][axis] * places[i][k]).sum::<f64>();
                 let [across, down] = [slope(0), slope(1)];
@@ -73,10 +82,13 @@ impl Layer {
             let size = self.size;
             raster::triangle(flat, size, |column, row, weights| {
                 let blend = |values: [f64; 3]| (0..3).map(|i| weights[i] * values[i]).sum::<f64>();
-                let at = [0, 1].map(|k| blend(places.map(|place| place[k])));
-                let nearness = blend(points.map(|point| point[2])) as f32;
+                let nearness = blend(nearnesses) as f32;
                 let texel = &mut self.texels[row * size[0] + column];
-                if at[1] < style.from || nearness <= texel.nearness {
+                if nearness <= texel.nearness {
+                    return;
+                }
+                let at = [0, 1].map(|k| blend(places.map(|place| place[k])));
+                if at[1] < style.from {
                     return;
                 }
                 let gap = blend(gaps);
@@ -174,7 +186,9 @@ fn lit(base: Rgb, shade: f64, line: f64, contact: bool) -> Rgb {
 /// How much of a grid line covers the place `at`: lines `spacing` apart, `steepness` of the place per pixel;
 /// fading where they would run together.
 fn grid_line(at: f64, spacing: f64, steepness: f64) -> f64 {
-    let offset = (at / spacing - (at / spacing).round()).abs() * spacing;
+    // The nearest line: places are positive.
+    let nearest = (at / spacing + 0.5) as u32;
+    let offset = (at - f64::from(nearest) * spacing).abs();
     let pixels_apart = spacing / steepness;
     let half_width = 0.45 * FINE as f64;
     if offset <= half_width * steepness { (pixels_apart / (8.0 * FINE as f64)).min(1.0) } else { 0.0 }

@@ -35,21 +35,19 @@ impl Map {
         let top = (room.top + (room.height - height) / 2.0).round();
         let frame = Frame { left, top, width, height };
         let size = [width, height].map(|length| length as usize * FINE);
+        let at = |v: usize| {
+            let [x, y] = scene.place(v);
+            [x * size[0] as f64, (1.0 - y) * size[1] as f64]
+        };
         let mut vertex = vec![OUTSIDE; size[0] * size[1]];
         for corners in scene.triangles() {
-            let points = corners.map(|v| {
-                let [x, y] = scene.place(v);
-                [x * size[0] as f64, (1.0 - y) * size[1] as f64]
-            });
-            raster::triangle(points, size, |column, row, weights| {
+            raster::triangle(corners.map(|v| raster::on_grid(at(v))), size, |column, row, weights| {
                 vertex[row * size[0] + column] = corners[raster::nearest_corner(weights)];
             });
         }
         // A dual cell in contact may be smaller than a pixel: its vertex is shown in any case.
         for &v in scene.triangles().iter().flatten().filter(|&&v| scene.in_contact(v)) {
-            let [x, y] = scene.place(v);
-            let [column, row] =
-                [x * size[0] as f64, (1.0 - y) * size[1] as f64].map(|at| at.max(0.0) as usize);
+            let [column, row] = at(v).map(|at| at.max(0.0) as usize);
             vertex[row.min(size[1] - 1) * size[0] + column.min(size[0] - 1)] = v;
         }
         Map { frame, size, vertex }

@@ -25,8 +25,8 @@ pub(super) fn draw(canvas: &mut Canvas, scene: &Scene, section: &Section, room: 
     let cut_at = view.in_box(cut.point(0.5), 0.0)[1];
     let lower_style = Style { membrane: 1, color: LOWER, line: LOWER_LINE, from: f64::NEG_INFINITY };
     let upper_style = Style { membrane: 0, color: UPPER, line: UPPER_LINE, from: cut_at };
-    let lower = membrane(scene, section, &view, &lower_style, room);
-    let upper = membrane(scene, section, &view, &upper_style, room);
+    let layer = |style: &Style| membrane(scene, section, &view, style, room);
+    let (lower, upper) = rayon::join(|| layer(&lower_style), || layer(&upper_style));
     floor(canvas, scene, cut, &view);
     lower.draw(canvas, None, 1.0);
     upper.draw(canvas, Some(&lower), VEIL);

@@ -76,8 +76,7 @@ fn no_more_pixels_are_looked_at_than_a_few_for_each_that_is_painted() {
     let slanted = [[10.0, 10.0], [2900.0, 2700.0], [2900.0, 2701.0]];
     for shift in [0.0, 0.1, 50.0] {
         let corners = slanted.map(|[x, y]| [x, y + shift]);
-        let (painted, visited) =
-            pixels(|paint| triangle(corners, size, |column, row, _| paint(column, row)));
+        let (painted, visited) = pixels(|paint| triangle(corners, size, |column, row, _| paint(column, row)));
         assert!(painted.len() > 1000 && visited <= painted.len() + 3000, "{visited}, {}", painted.len());
         let (painted, visited) =
             pixels(|paint| line([corners[0], corners[1]], 1.5, size, |column, row, _| paint(column, row)));
@@ -85,8 +84,7 @@ fn no_more_pixels_are_looked_at_than_a_few_for_each_that_is_painted() {
     }
     // Upright and flat strips narrower than a pixel: one line, at most, and its pixels.
     for corners in [[[7.4, 0.0], [7.6, 0.0], [7.6, 3000.0]], [[0.0, 7.6], [0.0, 7.7], [3000.0, 7.7]]] {
-        let (painted, visited) =
-            pixels(|paint| triangle(corners, size, |column, row, _| paint(column, row)));
+        let (painted, visited) = pixels(|paint| triangle(corners, size, |column, row, _| paint(column, row)));
         assert!(visited <= painted.len() + 2, "{visited}, {}", painted.len());
     }
 }
