@@ -15,6 +15,7 @@ mod converge;
 mod export;
 mod levels;
 mod memory;
+mod pictures;
 mod progress;
 mod section;
 mod setup;

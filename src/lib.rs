@@ -23,6 +23,7 @@ pub mod flux;
 pub mod estimate;
 pub mod study;
 pub mod output;
+#[cfg(feature = "pictures")]
 pub mod pictures;
 #[cfg(feature = "cli")]
 pub mod cli;

@@ -10,25 +10,33 @@ use super::case_file::BackendName;
 use super::clock::Clock;
 use super::levels::{GOES_ON, KEPT, Levels, MEMORY, TIME, failure, origin};
 use super::memory::Memory;
+use super::pictures::Pictures;
 use super::progress::Progress;
 use super::setup::{Results, Setup, make_folder, options, solver, write_file};
 use super::solve::{PICTURE as MEMBRANES, SOLUTION, SUMMARY, write_solution};
 use super::terminal::{grouped, print};
 use super::watch::Watch;
 use super::{CaseFile, Failure};
+#[cfg(feature = "pictures")]
+use crate::action::ContactSolution;
 use crate::discretization::Discretization;
-use crate::mesh::{DualMesh, MeshError, SubTriangulation};
+use crate::mesh::MeshError;
+#[cfg(feature = "pictures")]
+use crate::mesh::{DualMesh, Mesh, SubTriangulation};
 use crate::output::{Seconds, Summary, read_checkpoint, write_checkpoint};
+#[cfg(feature = "pictures")]
 use crate::pictures::{MeshPicture, RatesPicture, Series, render_rates, render_triangulation};
 use crate::study::{AdaptiveLevel, AdaptiveStudy, StudyError, exponent};
 
 const TABLE: &str = "adapt.csv";
 const ORIGIN: &str = "adapt.toml";
 const CHECKPOINT: &str = "checkpoint.npz";
-const PICTURE: &str = "adapt.png";
-const MESH: &str = "mesh.png";
+/// The names of pictures, without the ending of their format.
+const PICTURE: &str = "adapt";
+const MESH: &str = "mesh";
 
 /// The slope of the best possible rate: the error falls like the root of the number of vertices.
+#[cfg(feature = "pictures")]
 const OPTIMAL: [f64; 1] = [-0.5];
 
 /// How much larger the next mesh is taken to be while only one is known.
@@ -54,6 +62,7 @@ enum Stop {
 pub(super) fn run(arguments: &AdaptArguments, watch: &Watch) -> Result<(), Failure> {
     let clock = Clock::new(arguments.time_limit);
     let progress = Progress::new(arguments.case.quiet);
+    let pictures = Pictures::new(&arguments.pictures)?;
     let mut setup = Setup::new(&arguments.case, &progress)?;
     if let Some(backend) = arguments.backend {
         setup.case.solver.backend = backend;
@@ -95,10 +104,10 @@ pub(super) fn run(arguments: &AdaptArguments, watch: &Watch) -> Result<(), Failu
     if study.solution().is_none() {
         (study, _) = resumed(&setup, &folder, levels.len())?;
     }
-    write_results(&folder, &setup.case, &study, &levels)?;
+    write_results(&folder, &setup.case, &study, &levels, &pictures)?;
     drop(progress);
     if !arguments.case.quiet {
-        print(&table(&setup.case.title, &levels, &folder))?;
+        print(&table(&setup.case.title, &levels, &folder, &pictures))?;
     }
     verdict(&setup.name, arguments, &stop, &levels)
 }
@@ -193,6 +202,7 @@ fn write_results(
     case: &CaseFile,
     study: &AdaptiveStudy,
     levels: &[AdaptiveLevel],
+    pictures: &Pictures,
 ) -> Result<(), Failure> {
     let (Some((solution, bound)), Some(last)) = (study.solution(), levels.last()) else { return Ok(()) };
     let failed = |name: &str, error: &dyn std::fmt::Display| Failure::Input(format!("{name}: {error}"));
@@ -200,40 +210,62 @@ fn write_results(
     let d =
         Discretization::new(study.problem(), mesh.clone()).map_err(|error| failed(&case.title, &error))?;
     let mut results = Results::new(folder);
-    write_solution(&mut results, &case.title, &d, solution, bound)?;
+    write_solution(&mut results, &case.title, &d, solution, bound, pictures)?;
     let seconds = Seconds { bound: last.bound_seconds, ..Seconds::default() };
     let summary = Summary::new(&case.title, &d, last.tolerance, Ok(solution), seconds, Some(bound));
 
-    let sub = SubTriangulation::new(mesh).map_err(|error| failed(MESH, &error))?;
-    let dual = DualMesh::new(mesh, &sub);
-    let picture = MeshPicture { title: &case.title, mesh, dual: &dual, contact: Some(solution.contact()) };
-    let png = render_triangulation(&picture).map_err(|error| failed(MESH, &error))?;
-    results.write(MESH, |out| out.write_all(&png))?;
-
-    let png = render_rates(&RatesPicture {
-        title: &case.title,
-        abscissa: "vertices",
-        h: &levels.iter().map(|level| level.vertices as f64).collect::<Vec<_>>(),
-        series: &[
-            Series { name: "guaranteed bound", values: &values(levels, |level| Some(level.bound)) },
-            Series { name: "true error", values: &values(levels, |level| level.energy_error) },
-            Series { name: "residual estimator", values: &values(levels, |l| Some(l.residual_estimator)) },
-        ],
-        slopes: &OPTIMAL,
-    });
-    let png = png.map_err(|error| failed(PICTURE, &error))?;
-    results.write(PICTURE, |out| out.write_all(&png))?;
+    #[cfg(feature = "pictures")]
+    write_pictures(&mut results, case, mesh, solution, levels, pictures)?;
     results.write(SUMMARY, |out| summary.write(out))?;
     results.publish()
 }
 
+/// The mesh and the errors.
+#[cfg(feature = "pictures")]
+fn write_pictures(
+    results: &mut Results,
+    case: &CaseFile,
+    mesh: &Mesh,
+    solution: &ContactSolution,
+    levels: &[AdaptiveLevel],
+    pictures: &Pictures,
+) -> Result<(), Failure> {
+    let draw_mesh = || {
+        let sub = SubTriangulation::new(mesh).map_err(|error| error.to_string())?;
+        let dual = DualMesh::new(mesh, &sub);
+        let contact = Some(solution.contact());
+        let picture = MeshPicture { title: &case.title, mesh, dual: &dual, contact };
+        render_triangulation(&picture).map_err(|error| error.to_string())
+    };
+    pictures.write(MESH, draw_mesh, |file, write| results.write(file, write))?;
+    let draw_rates = || {
+        let picture = RatesPicture {
+            title: &case.title,
+            abscissa: "vertices",
+            h: &levels.iter().map(|level| level.vertices as f64).collect::<Vec<_>>(),
+            series: &[
+                Series { name: "guaranteed bound", values: &values(levels, |level| Some(level.bound)) },
+                Series { name: "true error", values: &values(levels, |level| level.energy_error) },
+                Series {
+                    name: "residual estimator",
+                    values: &values(levels, |l| Some(l.residual_estimator)),
+                },
+            ],
+            slopes: &OPTIMAL,
+        };
+        render_rates(&picture).map_err(|error| error.to_string())
+    };
+    pictures.write(PICTURE, draw_rates, |file, write| results.write(file, write))
+}
+
 /// What is not known cannot be drawn.
+#[cfg(feature = "pictures")]
 fn values(levels: &[AdaptiveLevel], of: impl Fn(&AdaptiveLevel) -> Option<f64>) -> Vec<f64> {
     levels.iter().map(|level| of(level).unwrap_or(f64::NAN)).collect()
 }
 
 /// The history for the eye.
-fn table(title: &str, levels: &[AdaptiveLevel], folder: &Path) -> String {
+fn table(title: &str, levels: &[AdaptiveLevel], folder: &Path, pictures: &Pictures) -> String {
     let mut text =
         format!("{title}\n  vertices    h min     bound  relative  effectivity  iterations  seconds\n");
     for level in levels {
@@ -253,8 +285,9 @@ fn table(title: &str, levels: &[AdaptiveLevel], folder: &Path) -> String {
     if let Some(slope) = exponent(later.iter().map(|level| [level.vertices as f64, level.bound])) {
         text += &format!("  the bound falls like vertices^{slope:.2} (later half; -0.50 is the best)\n");
     }
-    let files = [SOLUTION, SUMMARY, MEMBRANES, TABLE, PICTURE, MESH].join(", ");
-    text + &format!("  files: {}/{{{files}}}\n", folder.display())
+    let drawn = [MEMBRANES, PICTURE, MESH].into_iter().flat_map(|stem| pictures.files(stem));
+    let files: Vec<String> = [SOLUTION, SUMMARY, TABLE].map(str::to_owned).into_iter().chain(drawn).collect();
+    text + &format!("  files: {}/{{{}}}\n", folder.display(), files.join(", "))
 }
 
 fn verdict(

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::case_file::BackendName;
+use super::pictures::PictureArguments;
 use crate::study::Tolerance;
 
 /// Where results go when no folder is named: a folder of this one, called like the case file.
@@ -72,6 +73,8 @@ pub(super) struct SolveArguments {
     /// Also write dual.vtu, flux.vtu, mesh.png
     #[arg(long)]
     pub(super) dual: bool,
+    #[command(flatten)]
+    pub(super) pictures: PictureArguments,
 }
 
 #[derive(Debug, Args)]
@@ -105,6 +108,8 @@ pub(super) struct ConvergeArguments {
     /// Folder, whose levels are kept [default: out/CASE]
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(super) pictures: PictureArguments,
 }
 
 #[derive(Debug, Args)]
@@ -126,6 +131,8 @@ pub(super) struct AdaptArguments {
     /// Folder, whose levels are kept [default: out/CASE]
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(super) pictures: PictureArguments,
 }
 
 #[derive(Debug, Args)]
@@ -157,6 +164,8 @@ pub(super) struct BenchArguments {
     /// Folder for results [default: out/CASE, out/bench]
     #[arg(long, value_name = "DIR")]
     pub(super) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(super) pictures: PictureArguments,
     /// No output on the terminal but errors
     #[arg(long, short)]
     pub(super) quiet: bool,

@@ -9,6 +9,7 @@ use std::sync::Arc;
 use super::Failure;
 use super::args::{BenchArguments, CaseArguments, output_folder};
 use super::case_file::BackendName;
+use super::pictures::Pictures;
 use super::progress::Progress;
 use super::setup::{Setup, check_refinements, make_folder, solver};
 use super::terminal::{grouped, print};
@@ -25,6 +26,7 @@ const FAMILY: &str = "bench";
 
 pub(super) fn run(arguments: &BenchArguments, watch: &Watch) -> Result<(), Failure> {
     let progress = Progress::new(arguments.quiet);
+    let pictures = Pictures::new(&arguments.pictures)?;
     let mut bench = Bench::new(arguments, &progress, watch)?;
     match &arguments.case {
         _ if arguments.no_run => bench.run_nothing()?,
@@ -32,10 +34,10 @@ pub(super) fn run(arguments: &BenchArguments, watch: &Watch) -> Result<(), Failu
         Some(path) => bench.run_case(path.clone(), arguments)?,
     }
     let Bench { title, rows, measured, folder, .. } = bench;
-    write_results(&folder, &title, &rows)?;
+    write_results(&folder, &title, &rows, &pictures)?;
     drop(progress);
     if !arguments.quiet {
-        print(&table::table(&title, &rows, &folder))?;
+        print(&table::table(&title, &rows, &folder, &pictures))?;
     }
     if arguments.no_run || rows[..measured].iter().any(|row| row.certified) {
         return Ok(());

@@ -8,17 +8,21 @@ use super::case_file::BackendName;
 use super::clock::Clock;
 use super::levels::{GOES_ON, KEPT, Levels, MEMORY, TIME, failure, origin};
 use super::memory::Memory;
+use super::pictures::Pictures;
 use super::progress::Progress;
 use super::setup::{Setup, make_folder, options, solver, write_file};
 use super::terminal::{grouped, print};
 use super::watch::Watch;
+#[cfg(feature = "pictures")]
 use crate::pictures::{RatesPicture, Series, render_rates};
 use crate::study::{ConvergenceStudy, LevelErrors, MEASURES, fitted_rate, markdown, rate};
 
 const LEVELS: &str = "summary.csv";
 const TABLE: &str = "convergence.md";
-const PICTURE: &str = "convergence.png";
+/// The name of the picture, without the ending of its format.
+const PICTURE: &str = "convergence";
 /// The slopes to compare with: those of the theory, and that of a discontinuous action in L2.
+#[cfg(feature = "pictures")]
 const SLOPES: [f64; 4] = [0.5, 1.0, 1.5, 2.0];
 /// What the levels belong to.
 const ORIGIN: &str = "converge.toml";
@@ -29,6 +33,7 @@ const GROWTH: f64 = 4.0;
 pub(super) fn run(arguments: &ConvergeArguments, watch: &Watch) -> Result<(), Failure> {
     let clock = Clock::new(arguments.time_limit);
     let progress = Progress::new(arguments.case.quiet);
+    let pictures = Pictures::new(&arguments.pictures)?;
     let mut setup = Setup::new(&arguments.case, &progress)?;
     let Some(exact) = setup.case.exact.take() else {
         let remedy =
@@ -61,10 +66,11 @@ pub(super) fn run(arguments: &ConvergeArguments, watch: &Watch) -> Result<(), Fa
     };
     let stop = add_levels(&setup.name, &mut study, &mut levels, &limits, &kept, &progress)?;
     watch.lift();
-    write_picture(&folder, &setup.case.title, &levels)?;
+    #[cfg(feature = "pictures")]
+    write_picture(&folder, &setup.case.title, &levels, &pictures)?;
     drop(progress);
     if !arguments.case.quiet {
-        print(&table(&setup.case.title, &levels, &folder))?;
+        print(&table(&setup.case.title, &levels, &folder, &pictures))?;
     }
     stop.map_or(Ok(()), |why| {
         let (done, of) = (levels.len(), arguments.levels);
@@ -137,19 +143,32 @@ fn add_levels(
 }
 
 /// The errors against the mesh size.
-fn write_picture(folder: &Path, title: &str, levels: &[LevelErrors]) -> Result<(), Failure> {
+#[cfg(feature = "pictures")]
+fn write_picture(
+    folder: &Path,
+    title: &str,
+    levels: &[LevelErrors],
+    pictures: &Pictures,
+) -> Result<(), Failure> {
     let h: Vec<f64> = levels.iter().map(|level| level.h).collect();
     let values: Vec<Vec<f64>> =
         MEASURES.iter().map(|measure| levels.iter().map(measure.of).collect()).collect();
+    let names = MEASURES.map(|measure| typeset(measure.name));
     let series: Vec<Series> =
-        MEASURES.iter().zip(&values).map(|(measure, values)| Series { name: measure.name, values }).collect();
+        names.iter().zip(&values).map(|(name, values)| Series { name, values }).collect();
     let picture = RatesPicture { title, abscissa: "h", h: &h, series: &series, slopes: &SLOPES };
-    let png = render_rates(&picture).map_err(|error| Failure::Input(format!("{PICTURE}: {error}")))?;
-    write_file(&folder.join(PICTURE), |out| out.write_all(&png))
+    let draw = || render_rates(&picture).map_err(|error| error.to_string());
+    pictures.write(PICTURE, draw, |file, write| write_file(&folder.join(file), write))
+}
+
+/// The name of a measure as a paper has it.
+#[cfg(feature = "pictures")]
+fn typeset(name: &str) -> String {
+    name.replace("lambda", "λ").replace("H^-1", "H⁻¹").replace("L2", "L²")
 }
 
 /// The errors with their rates, for the eye.
-fn table(title: &str, levels: &[LevelErrors], folder: &Path) -> String {
+fn table(title: &str, levels: &[LevelErrors], folder: &Path, pictures: &Pictures) -> String {
     let mut text = format!("{title}\n  vertices");
     for measure in MEASURES {
         text += &format!(" {:>8}", shortened(measure.name));
@@ -176,7 +195,9 @@ fn table(title: &str, levels: &[LevelErrors], folder: &Path) -> String {
         }
         text.push('\n');
     }
-    text + &format!("  files: {}/{{{LEVELS}, {TABLE}, {PICTURE}}}\n", folder.display())
+    let mut files = vec![LEVELS.to_owned(), TABLE.to_owned()];
+    files.extend(pictures.files(PICTURE));
+    text + &format!("  files: {}/{{{}}}\n", folder.display(), files.join(", "))
 }
 
 fn rate_text(rate: Option<f64>) -> String {

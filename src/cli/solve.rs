@@ -6,6 +6,7 @@ use std::time::Instant;
 use super::Failure;
 use super::args::SolveArguments;
 use super::case_file::CaseFile;
+use super::pictures::{Pictures, all_files};
 use super::progress::Progress;
 use super::setup::{Results, Setup, make_folder, options, solver};
 use super::terminal::{fields, fixed, grouped, print};
@@ -17,19 +18,20 @@ use crate::fem::element_loads;
 use crate::flux::{Reconstruction, Reconstructor};
 use crate::mesh::{DualMesh, SubTriangulation};
 use crate::output::{Seconds, Summary, remove, write_dual_vtu, write_flux_vtu, write_vtu};
-use crate::pictures::membranes::{Picture, render};
-use crate::pictures::{MeshPicture, render_mesh};
+#[cfg(feature = "pictures")]
+use crate::pictures::{MeshPicture, membranes, render_mesh};
 use crate::qp::Status;
 use crate::solver::{PolishReport, Statistics};
 use crate::study::{AccuracyError, Bounded, solve_bounded};
 
 /// The files that hold a solution: present only when it is certified.
 pub(super) const SOLUTION: &str = "solution.vtu";
-pub(super) const PICTURE: &str = "membranes.png";
+/// The names of pictures, without the ending of their format.
+pub(super) const PICTURE: &str = "membranes";
 pub(super) const SUMMARY: &str = "summary.json";
 /// What `--dual` adds.
 const DUAL: &str = "dual.vtu";
-const MESH_PICTURE: &str = "mesh.png";
+const MESH_PICTURE: &str = "mesh";
 const FLUX: &str = "flux.vtu";
 
 /// What an interrupted run has to say.
@@ -37,6 +39,7 @@ const UNTOUCHED: &str = "it is as it was";
 
 pub(super) fn run(arguments: &SolveArguments, watch: &Watch) -> Result<(), Failure> {
     let progress = Progress::new(arguments.case.quiet);
+    let pictures = Pictures::new(&arguments.pictures)?;
     let mut setup = Setup::new(&arguments.case, &progress)?;
     override_settings(&mut setup, arguments);
     let settings = &setup.case.solver;
@@ -62,9 +65,9 @@ pub(super) fn run(arguments: &SolveArguments, watch: &Watch) -> Result<(), Failu
             progress.stage("writing the results");
             let start = Instant::now();
             let mut results = Results::new(&folder);
-            write_solution(&mut results, title, &d, &solution, &bound)?;
+            write_solution(&mut results, title, &d, &solution, &bound, &pictures)?;
             if arguments.dual {
-                write_dual(&mut results, &setup.case, &d, &solution)?;
+                write_dual(&mut results, &setup.case, &d, &solution, &pictures)?;
             }
             let output = start.elapsed().as_secs_f64();
             let seconds = Seconds { bound: bound_seconds, output, ..seconds };
@@ -73,7 +76,8 @@ pub(super) fn run(arguments: &SolveArguments, watch: &Watch) -> Result<(), Failu
             results.publish()?;
             drop(progress);
             if !arguments.case.quiet {
-                print(&table(&summary, solution.statistics().polish, &folder, arguments.dual))?;
+                let files = files(&pictures, arguments.dual).join(", ");
+                print(&table(&summary, solution.statistics().polish, &folder, &files))?;
             }
             Ok(())
         }
@@ -108,7 +112,8 @@ fn too_late(
 /// Writes the summary of a run without a solution, and says why there is none.
 fn reject(name: &str, folder: &Path, summary: &Summary, rejected: &Rejected) -> Failure {
     // What an earlier run left is not the solution of this one.
-    for file in [SUMMARY, SOLUTION, PICTURE, DUAL, MESH_PICTURE, FLUX] {
+    let data = [SUMMARY, SOLUTION, DUAL, FLUX].map(str::to_owned);
+    for file in data.into_iter().chain(all_files(PICTURE)).chain(all_files(MESH_PICTURE)) {
         let _ = remove(&folder.join(file));
     }
     let mut results = Results::new(folder);
@@ -133,18 +138,34 @@ fn override_settings(setup: &mut Setup, arguments: &SolveArguments) {
     settings.polish &= !arguments.no_polish;
 }
 
-/// `solution.vtu` and `membranes.png`.
+/// The files of a run that succeeds, the pictures last.
+fn files(pictures: &Pictures, dual: bool) -> Vec<String> {
+    let mut files = vec![SOLUTION.to_owned(), SUMMARY.to_owned()];
+    files.extend(pictures.files(PICTURE));
+    if dual {
+        files.extend([DUAL, FLUX].map(str::to_owned));
+        files.extend(pictures.files(MESH_PICTURE));
+    }
+    files
+}
+
+/// `solution.vtu` and the picture `membranes`.
 pub(super) fn write_solution(
     results: &mut Results,
     title: &str,
     d: &Discretization,
     solution: &ContactSolution,
     bound: &ErrorBound,
+    pictures: &Pictures,
 ) -> Result<(), Failure> {
     results.write(SOLUTION, |out| write_vtu(d.mesh(), solution, bound, out))?;
-    let picture = Picture::of(title, d.mesh(), solution);
-    let png = render(&picture).map_err(|error| Failure::Input(format!("{PICTURE}: {error}")))?;
-    results.write(PICTURE, |out| out.write_all(&png))
+    #[cfg(feature = "pictures")]
+    {
+        let picture = membranes::Picture::of(title, d.mesh(), solution);
+        let draw = || membranes::render(&picture).map_err(|error| error.to_string());
+        pictures.write(PICTURE, draw, |file, write| results.write(file, write))?;
+    }
+    Ok(())
 }
 
 /// The dual mesh `D_h`, with the action as the piecewise constant that it is, and as Figure 1 of the paper; the fluxes
@@ -154,6 +175,7 @@ fn write_dual(
     case: &CaseFile,
     d: &Discretization,
     solution: &ContactSolution,
+    pictures: &Pictures,
 ) -> Result<(), Failure> {
     let bad_input = |name: &str, error: &dyn std::fmt::Display| Failure::Input(format!("{name}: {error}"));
     let mesh = d.mesh();
@@ -161,9 +183,13 @@ fn write_dual(
     let dual = DualMesh::new(mesh, &sub);
     results.write(DUAL, |out| write_dual_vtu(&dual, solution, out))?;
 
-    let picture = MeshPicture { title: &case.title, mesh, dual: &dual, contact: Some(solution.contact()) };
-    let png = render_mesh(&picture).map_err(|error| bad_input(MESH_PICTURE, &error))?;
-    results.write(MESH_PICTURE, |out| out.write_all(&png))?;
+    #[cfg(feature = "pictures")]
+    {
+        let picture =
+            MeshPicture { title: &case.title, mesh, dual: &dual, contact: Some(solution.contact()) };
+        let draw = || render_mesh(&picture).map_err(|error| error.to_string());
+        pictures.write(MESH_PICTURE, draw, |file, write| results.write(file, write))?;
+    }
 
     let [f1, f2] = case.problem.load();
     let load = |f| element_loads(mesh, f).map_err(|error| bad_input(FLUX, &error));
@@ -173,7 +199,7 @@ fn write_dual(
 }
 
 /// The summary for the eye.
-fn table(summary: &Summary, polish: Option<PolishReport>, folder: &Path, dual: bool) -> String {
+fn table(summary: &Summary, polish: Option<PolishReport>, folder: &Path, files: &str) -> String {
     let number = |value: Option<f64>| value.map_or_else(String::new, |value| fixed(value, 8));
     let interior = summary.unknowns / 2;
     let contact = summary.contact_vertices.unwrap_or(0);
@@ -183,11 +209,6 @@ fn table(summary: &Summary, polish: Option<PolishReport>, folder: &Path, dual: b
             .fold(r.variational_inequality, f64::max)
     });
     let seconds = &summary.seconds;
-    let mut files = vec![SOLUTION, SUMMARY, PICTURE];
-    if dual {
-        files.extend([DUAL, FLUX, MESH_PICTURE]);
-    }
-    let files = files.join(", ");
     let rows = [
         (
             "mesh",

@@ -3,15 +3,21 @@
 use std::path::Path;
 
 use crate::cli::Failure;
+use crate::cli::pictures::Pictures;
 use crate::cli::setup::write_file;
-use crate::pictures::{Times, TimesPicture, render_times};
-use crate::study::comparison::{Curve, ORIGIN, Row, curves, markdown};
+#[cfg(feature = "pictures")]
+use crate::pictures::{Drawing, Times, TimesPicture, render_times};
+#[cfg(feature = "pictures")]
+use crate::study::comparison::curves;
+use crate::study::comparison::{Curve, ORIGIN, Row, markdown};
 
 pub(super) const ROWS: &str = "bench.csv";
 pub(super) const TABLE: &str = "bench.md";
-pub(super) const PICTURE: &str = "bench.png";
+/// The name of the picture, without the ending of its format.
+pub(super) const PICTURE: &str = "bench";
 
 /// The slopes to compare with: work in proportion to the vertices, and that of a sparse factorisation in the plane.
+#[cfg(feature = "pictures")]
 const SLOPES: [f64; 2] = [1.0, 1.5];
 
 /// Rows of a file at most: far more than a picture can tell apart. Each curve is looked for among all of them.
@@ -44,8 +50,25 @@ pub(super) fn write_rows(folder: &Path, rows: &[Row]) -> Result<(), Failure> {
 }
 
 /// Table and picture.
-pub(super) fn write_results(folder: &Path, title: &str, rows: &[Row]) -> Result<(), Failure> {
+pub(super) fn write_results(
+    folder: &Path,
+    title: &str,
+    rows: &[Row],
+    pictures: &Pictures,
+) -> Result<(), Failure> {
     write_file(&folder.join(TABLE), |out| out.write_all(markdown(rows).as_bytes()))?;
+    #[cfg(feature = "pictures")]
+    {
+        let title = format!("{title}: time to a certified solution");
+        let draw = || Ok(picture(&title, rows));
+        pictures.write(PICTURE, draw, |file, write| write_file(&folder.join(file), write))?;
+    }
+    Ok(())
+}
+
+/// The times of all curves, each in the group of who ran it.
+#[cfg(feature = "pictures")]
+fn picture(title: &str, rows: &[Row]) -> Drawing {
     let curves = curves(rows);
     let names = names(&curves);
     let points: Vec<Vec<[f64; 2]>> = curves
@@ -55,22 +78,26 @@ pub(super) fn write_results(folder: &Path, title: &str, rows: &[Row]) -> Result<
     let drawn: Vec<Times> = names
         .iter()
         .zip(&points)
-        .filter(|(_, points)| !points.is_empty())
-        .map(|(name, points)| Times { name, points })
+        .zip(&curves)
+        .filter(|((_, points), _)| !points.is_empty())
+        .map(|((name, points), curve)| Times { name, group: group(curve), points })
         .collect();
-    let title = format!("{title}: time to a certified solution");
-    let png = render_times(&TimesPicture { title: &title, curves: &drawn, slopes: &SLOPES })
-        .map_err(|error| Failure::Input(format!("{PICTURE}: {error}")))?;
-    write_file(&folder.join(PICTURE), |out| out.write_all(&png))
+    render_times(&TimesPicture { title, curves: &drawn, slopes: &SLOPES })
 }
 
-/// Names that tell the curves apart: of the solver, of who ran it if that was not this program, of the problem if there
-/// are several.
+/// Who ran a solver.
+#[cfg(feature = "pictures")]
+fn group<'a>(curve: &Curve<'a>) -> &'a str {
+    if curve.origin == ORIGIN { "membranes" } else { curve.origin }
+}
+
+/// Names that tell the curves of one group apart: of the solver, and of the problem if there are several.
+#[cfg(feature = "pictures")]
 fn names(curves: &[Curve]) -> Vec<String> {
     let several = curves.iter().any(|curve| curve.problem != curves[0].problem);
     let name = |curve: &Curve| {
         let problem = if several { format!(", {}", curve.problem) } else { String::new() };
-        format!("{}{problem}", solver_name(curve))
+        format!("{}{problem}", curve.solver)
     };
     curves.iter().map(name).collect()
 }
@@ -98,10 +125,11 @@ mod tests {
     }
 
     #[test]
+    #[cfg(feature = "pictures")]
     fn names_say_what_tells_curves_apart() {
         let ours = Curve { problem: "square", solver: "clarabel", origin: ORIGIN };
         let theirs = Curve { origin: "qpsolvers", ..ours };
-        assert_eq!(names(&[ours, theirs]), ["clarabel", "clarabel (qpsolvers)"]);
+        assert_eq!([ours, theirs].map(|curve| solver_name(&curve)), ["clarabel", "clarabel (qpsolvers)"]);
         let other = Curve { problem: "plate", ..ours };
         assert_eq!(names(&[ours, other]), ["clarabel, square", "clarabel, plate"]);
     }

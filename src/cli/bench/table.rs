@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::files::{PICTURE, ROWS, TABLE, solver_name};
+use crate::cli::pictures::Pictures;
 use crate::cli::terminal::grouped;
 use crate::study::comparison::{Row, curves, slope};
 
@@ -11,7 +12,7 @@ const NAME: usize = 22;
 const STATUS: usize = 17;
 
 /// The rows mesh by mesh, and the fitted slopes.
-pub(super) fn table(title: &str, rows: &[Row], folder: &Path) -> String {
+pub(super) fn table(title: &str, rows: &[Row], folder: &Path, pictures: &Pictures) -> String {
     let mut text = format!("{title}\n");
     let mut meshes: Vec<(&str, usize)> = Vec::new();
     for row in rows {
@@ -37,7 +38,9 @@ pub(super) fn table(title: &str, rows: &[Row], folder: &Path) -> String {
         let exponent = slope(rows, curve).map_or_else(|| "-".into(), |slope| format!("{slope:.2}"));
         text += &format!("  {:NAME$} {exponent:>9}{problem}\n", cut(&solver_name(&curve), NAME));
     }
-    text + &format!("  files: {}/{{{ROWS}, {TABLE}, {PICTURE}}}\n", folder.display())
+    let mut files = vec![ROWS.to_owned(), TABLE.to_owned()];
+    files.extend(pictures.files(PICTURE));
+    text + &format!("  files: {}/{{{}}}\n", folder.display(), files.join(", "))
 }
 
 /// What tells meshes apart; other programs need not know `n`.

@@ -1,12 +1,14 @@
 //! One surface of the oblique view with its depth, pixel by pixel.
 
-use super::canvas::{Canvas, FINE};
-use super::color::{CONTACT, Rgb, mix};
-use super::frame::Frame;
-use super::raster;
+use rayon::prelude::*;
+
 use super::scene::{Scene, TOUCHING};
 use super::view::View;
 use crate::geometry::barycentric_gradients;
+use crate::pictures::drawing::canvas::{Bitmap, FINE};
+use crate::pictures::drawing::color::{CONTACT, Rgb, mix};
+use crate::pictures::drawing::frame::Frame;
+use crate::pictures::drawing::raster;
 
 /// Lines win over the surface they lie on, and membrane 1 over membrane 2 where they touch.
 const NEARER: f32 = 0.004;
@@ -117,18 +119,24 @@ impl Layer {
         });
     }
 
-    /// Blends the layer onto the canvas where it is not hidden by `behind`: `share` of the membrane, contact and
-    /// lines in full.
-    pub(super) fn draw(&self, canvas: &mut Canvas, behind: Option<&Layer>, share: f64) {
-        let [left, top] = [self.frame.left, self.frame.top].map(|x| x as usize * FINE);
-        for (pixel, texel) in self.texels.iter().enumerate() {
-            let hidden = behind.is_some_and(|layer| layer.texels[pixel].nearness > texel.nearness + NEARER);
-            if texel.kind == Kind::Nothing || hidden {
-                continue;
+    /// The layer over another one, where that does not hide it: `share` of the membrane, contact and lines in full.
+    pub(super) fn over(&self, behind: &Layer, share: f64) -> Bitmap {
+        let look = |(texel, behind): (&Texel, &Texel)| {
+            let [red, green, blue] = behind.color;
+            let hidden = texel.kind == Kind::Nothing || behind.nearness > texel.nearness + NEARER;
+            match (hidden, behind.kind) {
+                (true, Kind::Nothing) => [0; 4],
+                (true, _) => [red, green, blue, 255],
+                (false, below) => {
+                    let share = if texel.kind == Kind::Membrane { share } else { 1.0 };
+                    let seen = below != Kind::Nothing && share < 1.0;
+                    let color = if seen { mix(behind.color, texel.color, share) } else { texel.color };
+                    let cover = if seen { 255 } else { (255.0 * share).round() as u8 };
+                    [color[0], color[1], color[2], cover]
+                }
             }
-            let share = if texel.kind == Kind::Membrane { share } else { 1.0 };
-            canvas.blend(left + pixel % self.size[0], top + pixel / self.size[0], texel.color, share);
-        }
+        };
+        Bitmap { size: self.size, pixels: self.texels.par_iter().zip(&behind.texels).map(look).collect() }
     }
 
     /// The point of the canvas nearest to `label` that shows `kind` and, if possible, has it all around.
