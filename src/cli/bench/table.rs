@@ -82,6 +82,11 @@ fn cut(text: &str, width: usize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cli::pictures::PictureArguments;
+
+    fn pictures() -> Pictures {
+        Pictures::new(&PictureArguments::default()).unwrap()
+    }
 
     /// Columns of a terminal that nobody has made wider.
     const COLUMNS: usize = 80;
@@ -100,7 +105,7 @@ mod tests {
             ..row.clone()
         };
         let quick = Row { solver: "quick".into(), certified: true, status: "solved".into(), ..row };
-        let text = table("a title", &[slow, quick], Path::new("out/bench"));
+        let text = table("a title", &[slow, quick], Path::new("out/bench"), &pictures());
         assert!(text.lines().all(|line| line.chars().count() <= COLUMNS), "{text}");
         let of = |name: &str| text.lines().find(|line| line.trim_start().starts_with(name)).unwrap();
         assert!(
@@ -124,6 +129,7 @@ mod tests {
             "",
             &[row(8, "rust"), row(16, "rust"), row(4, "other"), Row { n: None, ..row(8, "other") }],
             Path::new(""),
+            &pictures(),
         );
         let headings: Vec<&str> = text.lines().filter(|line| line.contains("square")).collect();
         let expected = [(4, 25), (8, 81), (16, 289)];

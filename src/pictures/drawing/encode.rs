@@ -26,6 +26,13 @@ pub struct EncodingError(#[from] ::png::EncodingError);
 /// A finished picture. It needs no file, and no font, to be shown.
 pub struct Drawing(Canvas);
 
+impl std::fmt::Debug for Drawing {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        let [width, height] = self.0.size();
+        write!(f, "Drawing({width} x {height})")
+    }
+}
+
 impl Drawing {
     pub(crate) fn new(canvas: Canvas) -> Drawing {
         Drawing(canvas)
