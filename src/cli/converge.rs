@@ -164,7 +164,7 @@ fn write_picture(
 /// The name of a measure as a paper has it.
 #[cfg(feature = "pictures")]
 fn typeset(name: &str) -> String {
-    name.replace("lambda", "λ").replace("H^-1", "H⁻¹").replace("L2", "L²")
+    name.replace("lambda", "λ").replace("H^-1", "H⁻¹").replace("L2", "L²").replace("H1", "H¹")
 }
 
 /// The errors with their rates, for the eye.
