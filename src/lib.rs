@@ -29,6 +29,17 @@ pub mod cli;
 
 pub use sprs;
 
+/// What most programs need: `use membrane_contact::prelude::*`.
+pub mod prelude {
+    pub use crate::action::{ContactSolution, certify};
+    pub use crate::discretization::Discretization;
+    pub use crate::estimate::ErrorBound;
+    pub use crate::mesh::{Mesh, MeshSize, Pattern, disk, generate, l_shape, polygon, rectangle};
+    pub use crate::problem::{ContactProblem, Domain, Expression, Function};
+    pub use crate::solver::{ActiveSet, Auto, ContactSolver, Multigrid, QpSolver, SolverOptions};
+    pub use crate::study::{Solved, solve};
+}
+
 /// The README's code is compiled and run.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
