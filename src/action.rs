@@ -6,7 +6,7 @@ mod recovery;
 mod residuals;
 mod solution;
 mod sums;
-#[cfg(test)]
+#[cfg(all(test, feature = "clarabel"))]
 mod tests;
 
 pub use certificate::{Reason, Rejected, certify};

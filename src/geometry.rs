@@ -7,4 +7,6 @@ mod triangle;
 pub use interface::Interface;
 
 pub(crate) use ring::ring_area;
-pub(crate) use triangle::{barycentric_gradients, distance_sq, twice_signed_area};
+#[cfg(feature = "pictures")]
+pub(crate) use triangle::barycentric_gradients;
+pub(crate) use triangle::{distance_sq, twice_signed_area};

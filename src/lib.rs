@@ -9,6 +9,7 @@
 #![deny(missing_docs)]
 
 mod text;
+mod parallel;
 pub mod geometry;
 pub mod problem;
 pub mod formats;
@@ -22,7 +23,9 @@ pub mod action;
 pub mod flux;
 pub mod estimate;
 pub mod study;
+#[cfg(feature = "files")]
 pub mod output;
+#[cfg(feature = "pictures")]
 pub mod pictures;
 #[cfg(feature = "cli")]
 pub mod cli;

@@ -15,7 +15,6 @@ pub use qp_solver::QpSolver;
 
 use std::time::{Duration, Instant};
 
-use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::discretization::Discretization;
@@ -123,7 +122,8 @@ impl StartingPoint {
 }
 
 /// How a candidate was found.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub struct Statistics {
     /// The solver's name.
     pub solver: String,
@@ -139,10 +139,10 @@ pub struct Statistics {
     /// Which solver was chosen and why, when that was left open.
     pub choice: Option<String>,
     /// Seconds spent before the first iteration. Not kept with the rest: they are another number in each run.
-    #[serde(skip)]
+    #[cfg_attr(feature = "files", serde(skip))]
     pub setup_seconds: f64,
     /// Seconds spent iterating, the polish included. Likewise.
-    #[serde(skip)]
+    #[cfg_attr(feature = "files", serde(skip))]
     pub solve_seconds: f64,
     /// What the polish did; `None` when it was not asked for or has nothing to do.
     pub polish: Option<PolishReport>,

@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod adapt;
+#[cfg(feature = "files")]
 pub mod comparison;
 mod converge;
 mod fit;

@@ -1,6 +1,6 @@
 //! A certified solution.
 
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 use super::sums::sums;
 use super::{Action, Residuals};

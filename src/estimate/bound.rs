@@ -23,7 +23,6 @@ mod trace;
 use std::f64::consts::PI;
 
 use cells::{Cells, Sums};
-use serde::Serialize;
 use trace::Trace;
 
 use super::MeasureError;
@@ -55,7 +54,8 @@ pub struct ErrorBound {
 
 /// What a bound consists of, each part as a norm of its own; the bound is at most the sum of the parts, with `boundary` and
 /// `algebraic` counted twice.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "files", derive(serde::Serialize))]
 pub struct BoundParts {
     /// The distance of the reconstructed fluxes from `-mu_i grad u_ih`: the discretisation error.
     pub flux: f64,

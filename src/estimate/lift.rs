@@ -1,6 +1,6 @@
 //! The norm of `H^-1` by a Riesz lift.
 
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 use super::MeasureError;
 use super::multigrid::Multigrid;

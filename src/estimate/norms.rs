@@ -1,6 +1,6 @@
 //! The norms of the error of a solution.
 
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 use super::MeasureError;
 use super::lift::{DualNorm, dual_norm};

@@ -1,6 +1,6 @@
 //! Load vectors.
 
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 use thiserror::Error;
 
 use super::moments::LoadMoments;

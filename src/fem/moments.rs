@@ -1,6 +1,6 @@
 //! A load triangle by triangle: what load vectors and error bounds need of it.
 
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 use super::CutRule;
 use super::load::NotFinite;

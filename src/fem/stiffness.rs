@@ -1,6 +1,6 @@
 //! The stiffness matrix.
 
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 use sprs::CsMat;
 
 use super::local_stiffness;

@@ -4,7 +4,7 @@
 //! known from what enters through the first half edge and from the source in the wedge; its square is a quadratic form of
 //! the two.
 
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 use super::fan::{Walk, corner_of};
 use super::field::through;

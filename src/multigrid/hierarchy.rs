@@ -21,7 +21,7 @@ pub(crate) use transfer::Transfer;
 
 use std::sync::Arc;
 
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 use crate::discretization::Discretization;
 use crate::mesh::{Parents, VertexKind};

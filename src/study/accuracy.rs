@@ -140,7 +140,7 @@ impl Bounded {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "clarabel"))]
 mod tests {
     use super::*;
     use crate::mesh::{Pattern, rectangle};

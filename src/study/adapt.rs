@@ -3,8 +3,6 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use serde::{Deserialize, Serialize};
-
 use super::accuracy::{Bounded, Tolerance, solve_bounded};
 use super::prolongation::Fields;
 use super::{StudyError, mark};
@@ -39,7 +37,8 @@ pub struct AdaptiveStudy {
 }
 
 /// One level: a mesh and the error on it. Written as a row of `adapt.csv`.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub struct AdaptiveLevel {
     /// The number of the level, from 0.
     pub level: usize,

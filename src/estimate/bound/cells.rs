@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 use super::trace::Trace;
 use crate::discretization::Discretization;

@@ -1,6 +1,7 @@
 //! The bound against true errors, and its parts against their definitions.
 
 mod identity;
+#[cfg(feature = "clarabel")]
 mod never_below;
 mod parts;
 mod rounding;
@@ -21,6 +22,7 @@ fn bound(
     ErrorBound::new(problem, Some(domain), d, displacement).unwrap()
 }
 
+#[cfg(feature = "clarabel")]
 /// `|||u - u_h|||` of any displacements.
 fn energy_error(d: &Discretization, displacement: &[Vec<f64>; 2], exact: &ExactSolution) -> f64 {
     measure(d, displacement, exact).unwrap()

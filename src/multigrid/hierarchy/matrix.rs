@@ -1,6 +1,6 @@
 //! Symmetric matrices in compact rows.
 
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 use super::galerkin::RowSum;
 use super::inverse;
@@ -171,7 +171,7 @@ pub(crate) fn assemble(blocks: Vec<Rows>) -> (Pattern, Values) {
     let mut off_diagonal = &mut values.off_diagonal[..];
     let (mut diagonal, mut inverse) = (&mut values.diagonal[..], &mut values.inverse[..]);
     let mut offset = 0;
-    rayon::scope(|scope| {
+    crate::parallel::scope(|scope| {
         for block in blocks {
             let (rows, entries) = (block.ends.len(), block.column.len());
             let start = split_off(&mut start, rows);

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 /// Rows that are gathered together.
 const BLOCK: usize = 4096;
