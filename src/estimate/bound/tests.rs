@@ -8,9 +8,8 @@ mod rounding;
 
 use super::ErrorBound;
 use crate::discretization::Discretization;
-use crate::estimate::energy_error as measure;
 use crate::estimate::norms::cut_rule;
-use crate::problem::{ContactProblem, Domain, ExactSolution};
+use crate::problem::{ContactProblem, Domain};
 
 /// The bound on the mesh's polygon, or on the disk.
 fn bound(
@@ -20,10 +19,4 @@ fn bound(
     displacement: &[Vec<f64>; 2],
 ) -> ErrorBound {
     ErrorBound::new(problem, Some(domain), d, displacement).unwrap()
-}
-
-#[cfg(feature = "clarabel")]
-/// `|||u - u_h|||` of any displacements.
-fn energy_error(d: &Discretization, displacement: &[Vec<f64>; 2], exact: &ExactSolution) -> f64 {
-    measure(d, displacement, exact).unwrap()
 }
