@@ -8,7 +8,7 @@ use crate::error::ErrorBound;
 use crate::mesh::Mesh;
 
 /// Writes `solution.vtu`: the mesh, with point data `u1`, `u2`, `gap`, `lambda` (zero on the boundary) and `contact` (0 or
-/// 1), vertices in the order of the mesh, and cell data `error_indicator`, whose sum of squares is that of the
+/// 1, where an interior vertex has the gap zero), vertices in the order of the mesh, and cell data `error_indicator`, whose sum of squares is that of the
 /// bound. Binary, compressed by zlib; ParaView, PyVista and meshio read it.
 ///
 /// # Errors

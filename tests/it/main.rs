@@ -12,6 +12,7 @@ mod backends;
 mod bad_input;
 #[cfg(feature = "cli")]
 mod bench;
+mod cones;
 mod custom_backend;
 mod exact;
 mod hostile_numbers;
