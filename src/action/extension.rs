@@ -48,3 +48,65 @@ pub(crate) fn extend_to_boundary(
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::samples::{assorted, square};
+    use crate::mesh::{Mesh, disk};
+    use crate::problem::{ContactProblem, Function};
+
+    /// The action over vertices and where it has been continued to, of a gap and an action.
+    fn extended(
+        mesh: &Mesh,
+        gap: impl Fn(f64, f64) -> f64 + Send + Sync + Clone + 'static,
+        action: impl Fn(f64, f64) -> f64,
+    ) -> (Vec<f64>, Vec<bool>) {
+        let height = Function::from_fn(gap.clone());
+        let d = Discretization::new(&ContactProblem::builder().height(height).build().unwrap(), mesh);
+        let u1: Vec<f64> = mesh.points().iter().map(|&[x, y]| gap(x, y)).collect();
+        let u2 = vec![0.0; u1.len()];
+        let inside = |(&[x, y], &kind): (&[f64; 2], &VertexKind)| match kind {
+            VertexKind::Interior => action(x, y),
+            _ => 0.0,
+        };
+        let mut lambda: Vec<f64> = mesh.points().iter().zip(mesh.kind()).map(inside).collect();
+        let at_boundary = extend_to_boundary(&d.unwrap(), &[u1, u2], &mut lambda);
+        (lambda, at_boundary)
+    }
+
+    #[test]
+    fn a_constant_action_is_continued_everywhere_also_into_corners() {
+        let mut meshes = assorted();
+        meshes.extend([square(2), disk([0.0, 0.0], 1.0, 3).unwrap()]);
+        for mesh in meshes.iter().filter(|mesh| mesh.kind().contains(&VertexKind::Interior)) {
+            let (lambda, at_boundary) = extended(mesh, |_, _| 0.0, |_, _| 1.5);
+            for (a, &kind) in mesh.kind().iter().enumerate() {
+                assert_eq!(lambda[a], if kind == VertexKind::Unused { 0.0 } else { 1.5 });
+                assert_eq!(at_boundary[a], kind == VertexKind::Boundary);
+            }
+        }
+    }
+
+    #[test]
+    fn it_is_the_mean_of_the_neighbours_and_ends_where_the_membranes_part() {
+        let mesh = square(4);
+        let (lambda, at_boundary) = extended(&mesh, |x, _| (x - 0.5).max(0.0), |_, y| y);
+        let at = |x: f64, y: f64| mesh.points().iter().position(|&point| point == [x, y]).unwrap();
+        // Triangles above the diagonals from lower left to upper right: (0, 1/4) has the neighbours (1/4, 1/4), (1/4, 1/2), one of
+        // them in two triangles.
+        let mean = lambda[at(0.0, 0.25)];
+        assert!(at_boundary[at(0.0, 0.25)] && 0.25 < mean && mean < 0.5, "{mean}");
+        assert!(at_boundary[at(0.25, 0.0)], "all its triangles touch");
+        for apart in [at(0.5, 0.0), at(0.75, 0.0), at(1.0, 0.5), at(0.5, 1.0)] {
+            assert!(!at_boundary[apart] && lambda[apart] == 0.0);
+        }
+        assert!(!at_boundary[at(0.25, 0.25)], "it is inside");
+    }
+
+    #[test]
+    fn without_interior_vertices_there_is_no_action_to_continue() {
+        let (lambda, at_boundary) = extended(&square(1), |_, _| 0.0, |_, _| 1.0);
+        assert_eq!((lambda, at_boundary), (vec![0.0; 4], vec![true; 4]));
+    }
+}
