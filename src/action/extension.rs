@@ -15,6 +15,9 @@ pub(crate) fn extend_to_boundary(
 ) -> Vec<bool> {
     let kind = d.mesh().kind();
     let is_boundary = |a: usize| kind[a] == VertexKind::Boundary;
+    if (0..kind.len()).all(|a| !is_boundary(a) || u1[a] > u2[a]) {
+        return vec![false; kind.len()];
+    }
     let at_boundary = |corners: &&[usize; 3]| corners.iter().any(|&a| is_boundary(a));
     let mut triangles: Vec<[usize; 3]> = d.mesh().triangles().iter().filter(at_boundary).copied().collect();
     let mut touches: Vec<bool> = kind.iter().map(|&kind| kind == VertexKind::Boundary).collect();

@@ -95,7 +95,9 @@ impl Before {
         let held =
             |a: usize| d.mesh().kind()[a] == VertexKind::Interior || (u1[a], u2[a]) == (d.height()[a], 0.0);
         let is_complementary = |(&a, &y): (&usize, &f64)| u1[a] == u2[a] || (u1[a] > u2[a] && y == 0.0);
-        if d.interior().iter().zip(multiplier).all(is_complementary) && (0..u1.len()).all(held) {
+        if d.interior().par_iter().zip(multiplier).with_min_len(BLOCK).all(is_complementary)
+            && (0..u1.len()).into_par_iter().with_min_len(BLOCK).all(held)
+        {
             return None;
         }
         let densities: Vec<f64> =

@@ -41,11 +41,20 @@ impl Totals {
     }
 
     /// Likewise, with the cells of the boundary to which the contact is continued.
-    fn extended(d: &Discretization, displacement: &[Vec<f64>; 2], contact: &[bool], lambda: &[f64]) -> Self {
+    fn extended(
+        self,
+        d: &Discretization,
+        displacement: &[Vec<f64>; 2],
+        contact: &[bool],
+        lambda: &[f64],
+    ) -> Self {
         let mut lambda = lambda.to_vec();
-        let mut contact = contact.to_vec();
         let at_boundary = extend_to_boundary(d, displacement, &mut lambda);
-        contact.iter_mut().zip(at_boundary).for_each(|(contact, touches)| *contact |= touches);
+        if !at_boundary.contains(&true) {
+            return self;
+        }
+        let contact: Vec<bool> =
+            contact.iter().zip(at_boundary).map(|(contact, edge)| contact | edge).collect();
         Self::new(d, &contact, &lambda)
     }
 }
@@ -58,10 +67,11 @@ impl ContactSolution {
         statistics: Statistics,
     ) -> Self {
         let Projection { displacement, lambda, contact, cut_off, before } = projection;
+        let inside = Totals::new(d, &contact, &lambda);
         Self {
             energy: energy(d, &displacement),
-            inside: Totals::new(d, &contact, &lambda),
-            extended: Totals::extended(d, &displacement, &contact, &lambda),
+            inside,
+            extended: inside.extended(d, &displacement, &contact, &lambda),
             displacement,
             lambda,
             contact,
