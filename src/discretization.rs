@@ -176,6 +176,11 @@ impl Discretization {
         self.row(a).map(|(&b, k)| k * v(b)).sum()
     }
 
+    /// `K_aa`.
+    pub(crate) fn stiffness_diagonal(&self, a: usize) -> f64 {
+        self.row(a).find(|(b, _)| **b == a).map_or(0.0, |(_, &k)| k)
+    }
+
     /// The columns and entries of row `a` of `K`.
     fn row(&self, a: usize) -> impl Iterator<Item = (&usize, &f64)> {
         let range = self.stiffness.indptr().outer_inds_sz(a);

@@ -217,10 +217,10 @@ fn table(summary: &Summary, polish: Option<PolishReport>, folder: &Path, dual: b
                 "{} of {} interior vertices, area {}",
                 grouped(contact),
                 grouped(interior),
-                fixed(summary.contact_area.unwrap_or(0.0), 6)
+                fixed(summary.contact_area_extended.unwrap_or(0.0), 6)
             ),
         ),
-        ("total force", number(summary.total_force)),
+        ("total force", number(summary.total_force_extended)),
         (
             "seconds",
             format!(

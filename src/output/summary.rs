@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use serde::Serialize;
 
-use crate::action::{ContactSolution, Rejected, Residuals};
+use crate::action::{ContactSolution, CutOff, Rejected, Residuals};
 use crate::discretization::Discretization;
 use crate::estimate::{BoundParts, ErrorBound};
 use crate::solver::Statistics;
@@ -46,12 +46,20 @@ pub struct Summary {
     pub polish: Option<PolishSummary>,
     /// `J(u_h)`; absent when not certified.
     pub energy: Option<f64>,
-    /// Vertices in contact; absent when not certified.
+    /// Interior vertices in contact, with a force or without; absent when not certified.
     pub contact_vertices: Option<usize>,
-    /// The area of their dual cells; absent when not certified.
+    /// Those of them that are pressed, by `lambda_a > 0`; absent when not certified.
+    pub pressed_vertices: Option<usize>,
+    /// The area of the dual cells of the vertices in contact, the paper's; absent when not certified.
     pub contact_area: Option<f64>,
-    /// `int lambda_h`; absent when not certified.
+    /// Likewise, with the cells of the boundary around which the membranes touch; absent when not certified.
+    pub contact_area_extended: Option<f64>,
+    /// `int lambda_h`, the paper's; absent when not certified.
     pub total_force: Option<f64>,
+    /// Likewise, with the action continued to these cells of the boundary; absent when not certified.
+    pub total_force_extended: Option<f64>,
+    /// What was cut off to make the solution exactly complementary, relative; absent when not certified.
+    pub cut_off: Option<CutOff>,
     /// A guaranteed bound of the energy error; absent when not certified.
     pub error_bound: Option<f64>,
     /// The bound relative to the energy norm of the exact solution; absent also when it is too large to know that.
@@ -147,8 +155,12 @@ impl Summary {
             polish: polish(statistics),
             energy: solution.map(ContactSolution::energy),
             contact_vertices: solution.map(|s| s.contact().iter().filter(|&&contact| contact).count()),
+            pressed_vertices: solution.map(|s| s.lambda().iter().filter(|&&lambda| lambda > 0.0).count()),
             contact_area: solution.map(ContactSolution::contact_area),
+            contact_area_extended: solution.map(ContactSolution::contact_area_extended),
             total_force: solution.map(ContactSolution::total_force),
+            total_force_extended: solution.map(ContactSolution::total_force_extended),
+            cut_off: solution.map(ContactSolution::cut_off),
             error_bound: bound.map(|bound| bound.total),
             relative_error_bound: bound.and_then(ErrorBound::relative),
             error_parts: bound.map(|bound| bound.parts),

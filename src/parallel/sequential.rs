@@ -56,6 +56,14 @@ impl<I: Iterator> Sequential<I> {
         Sequential(self.0.enumerate())
     }
 
+    pub(crate) fn zip<J: IntoIterator>(self, other: J) -> Sequential<std::iter::Zip<I, J::IntoIter>> {
+        Sequential(self.0.zip(other))
+    }
+
+    pub(crate) fn all(mut self, f: impl FnMut(I::Item) -> bool) -> bool {
+        self.0.all(f)
+    }
+
     pub(crate) fn chain<J>(self, other: J) -> Sequential<std::iter::Chain<I, J::IntoIter>>
     where
         J: IntoIterator<Item = I::Item>,

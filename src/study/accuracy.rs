@@ -124,7 +124,7 @@ impl Bounded {
         tolerance: f64,
     ) -> Result<Self, MeasureError> {
         let start = Instant::now();
-        let bound = ErrorBound::new(problem, domain, d, solution.displacement())?;
+        let bound = ErrorBound::of_solution(problem, domain, d, &solution)?;
         Ok(Self { solution, bound, tolerance, bound_seconds: start.elapsed().as_secs_f64() })
     }
 

@@ -94,9 +94,9 @@ impl AdaptiveLevel {
 pub struct Checkpoint {
     /// Of each refinement the triangles that were marked.
     pub marked: Vec<Vec<usize>>,
-    /// `[u1, u2]` over vertices.
+    /// `[u1, u2]` over vertices, as they were certified.
     pub displacement: [Vec<f64>; 2],
-    /// `lambda_h` over vertices.
+    /// `lambda_h` over vertices, likewise.
     pub lambda: Vec<f64>,
     /// The tolerance within which they are certified.
     pub tolerance: f64,
@@ -210,12 +210,15 @@ impl AdaptiveStudy {
 
     /// What a later run goes on from; `None` before the first level.
     pub fn checkpoint(&self) -> Option<Checkpoint> {
-        self.last.as_ref().map(|last| Checkpoint {
-            marked: self.marked.clone(),
-            displacement: last.solution.displacement().clone(),
-            lambda: last.solution.lambda().to_vec(),
-            tolerance: last.tolerance,
-            statistics: last.solution.statistics().clone(),
+        self.last.as_ref().map(|last| {
+            let (displacement, lambda) = last.solution.certified();
+            Checkpoint {
+                marked: self.marked.clone(),
+                displacement: displacement.clone(),
+                lambda: lambda.to_vec(),
+                tolerance: last.tolerance,
+                statistics: last.solution.statistics().clone(),
+            }
         })
     }
 

@@ -8,6 +8,7 @@ mod answer;
 mod backends;
 mod bad_input;
 mod bench;
+mod cones;
 mod custom_backend;
 mod exact;
 mod hostile_numbers;
