@@ -3,4 +3,5 @@
 pub mod gmsh;
 pub(crate) mod matrix_market;
 pub(crate) mod npz;
+pub(crate) mod qps;
 pub(crate) mod vtk;
