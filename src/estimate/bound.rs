@@ -19,24 +19,26 @@
 
 mod cells;
 mod trace;
-
-use std::f64::consts::PI;
+mod warning;
 
 use cells::{Cells, Sums};
 use serde::Serialize;
 use trace::Trace;
+pub use warning::LoadWarning;
 
 use super::MeasureError;
 use crate::action::Action;
 use crate::discretization::Discretization;
 use crate::flux::WedgeFluxes;
+use crate::geometry::friedrichs;
 use crate::mesh::{VertexKind, VertexTriangles};
 use crate::problem::{ContactProblem, Domain};
 
 /// A guaranteed bound of the energy error `|||u - u_h||| = (sum_i mu_i |u_i - u_ih|_{H1}^2)^(1/2)`.
 ///
 /// Guaranteed up to the quadrature of loads and height: loads that are polynomials of degree 3 are integrated exactly, and of
-/// others the residual is known as well as the quadrature knows them.
+/// others the residual is known as well as the quadrature knows them. How well that is, a second rule says at other points
+/// ([`ErrorBound::warnings`]); what both do not meet, nobody sees.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ErrorBound {
     /// The bound. Unit: square root of an energy.
@@ -51,6 +53,11 @@ pub struct ErrorBound {
     /// The squared indicators `sum_i (a_{K,i} + b_{K,i})^2 + 2 a_{K,i} b_{K,i} + 2 (lt, w^)_K`: with `alpha_i = 0`, their sum is the
     /// square of the bound. Shape: `triangles`.
     pub indicators: Vec<f64>,
+    /// By how much the bound would grow at most, about, by what a second quadrature rule finds of each load; see
+    /// [`Discretization::quadrature_difference`]. Unit: square root of an energy.
+    pub quadrature_difference: [f64; 2],
+    /// The loads of which the quadrature may know too little for the bound to hold.
+    pub warnings: Vec<LoadWarning>,
 }
 
 /// What a bound consists of, each part as a norm of its own; the bound is at most the sum of the parts, with `boundary` and
@@ -85,7 +92,8 @@ impl ErrorBound {
     /// counts as the domain.
     ///
     /// # Errors
-    /// [`MeasureError::OtherMesh`] when the displacements are not over the vertices.
+    /// [`MeasureError::OtherMesh`] when the displacements are not over the vertices, [`MeasureError::Height`] and
+    /// [`MeasureError::Load`] when the data have no value at a point of the boundary.
     pub fn new(
         problem: &ContactProblem,
         domain: Option<&Domain>,
@@ -102,10 +110,11 @@ impl ErrorBound {
             fluxes: WedgeFluxes::new(d, &around, displacement, &push.lambda),
             trace: Trace::new(problem, domain, d, &around),
         };
-        let (sums, indicators) = cells.sum();
+        let (sums, indicators) = cells.sum()?;
+        let friedrichs = friedrichs(cells.sides());
         drop(cells);
         let Push { lambda, rest_sq } = push;
-        Ok(Self::from_sums(d, &sums, friedrichs(d, domain), rest_sq, lambda, indicators))
+        Ok(Self::from_sums(d, &sums, friedrichs, rest_sq, lambda, indicators))
     }
 
     fn from_sums(
@@ -122,8 +131,11 @@ impl ErrorBound {
             (sums.indicators_sq[i].sqrt() + rest[i]).powi(2) + changes
         };
         let others = sums.products + sums.contact + sums.overlap;
+        let total = (of_membrane(0) + of_membrane(1) + 2.0 * others).sqrt();
         Self {
-            total: (of_membrane(0) + of_membrane(1) + 2.0 * others).sqrt(),
+            total,
+            quadrature_difference: d.quadrature_difference(),
+            warnings: LoadWarning::all(d, total),
             energy_norm: sums.energy_sq.sqrt(),
             parts: BoundParts {
                 flux: sums.flux_sq.sqrt(),
@@ -200,16 +212,6 @@ fn push_at_boundary(
             lambda[a] = inside().map(|b| lambda[b]).sum::<f64>() / count as f64;
         }
     }
-}
-
-/// `C_F` with `||v|| <= C_F |v|_{H1}` for functions that vanish on the boundary.
-fn friedrichs(d: &Discretization, domain: Option<&Domain>) -> f64 {
-    let (lower, upper) = d.mesh().bounding_box();
-    let sides = match domain {
-        Some(Domain::Disk { radius, .. }) => [2.0 * radius; 2],
-        _ => [upper[0] - lower[0], upper[1] - lower[1]],
-    };
-    1.0 / (PI * (1.0 / sides[0]).hypot(1.0 / sides[1]))
 }
 
 #[cfg(test)]
