@@ -6,4 +6,6 @@ pub(crate) mod matrix_market;
 #[cfg(feature = "files")]
 pub(crate) mod npz;
 #[cfg(feature = "files")]
+pub(crate) mod qps;
+#[cfg(feature = "files")]
 pub(crate) mod vtk;

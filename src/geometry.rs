@@ -1,11 +1,13 @@
 //! Lengths, areas and curves in the plane.
 
+mod inequalities;
 mod interface;
 mod ring;
 mod triangle;
 
 pub use interface::Interface;
 
+pub(crate) use inequalities::{friedrichs, poincare};
 pub(crate) use ring::ring_area;
 #[cfg(feature = "pictures")]
 pub(crate) use triangle::barycentric_gradients;

@@ -1,7 +1,7 @@
 //! The sparse convex quadratic program, its one sign convention, and the solvers for it.
 //!
 //! ```text
-//! minimise    1/2 x'P x + q'x
+//! minimise    1/2 x'P x + q'x + c
 //! subject to  A x >= b                      (multiplier y >= 0)
 //!
 //! optimal:    P x + q = A'y,   A x >= b,   y >= 0,   y_k (A x - b)_k = 0

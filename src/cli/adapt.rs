@@ -17,6 +17,7 @@ use super::terminal::{grouped, print};
 use super::watch::Watch;
 use super::{CaseFile, Failure};
 use crate::discretization::Discretization;
+use crate::estimate::LoadWarning;
 use crate::mesh::{DualMesh, MeshError, SubTriangulation};
 use crate::output::{Seconds, Summary, read_checkpoint, write_checkpoint};
 use crate::pictures::{MeshPicture, RatesPicture, Series, render_rates, render_triangulation};
@@ -98,7 +99,8 @@ pub(super) fn run(arguments: &AdaptArguments, watch: &Watch) -> Result<(), Failu
     write_results(&folder, &setup.case, &study, &levels)?;
     drop(progress);
     if !arguments.case.quiet {
-        print(&table(&setup.case.title, &levels, &folder))?;
+        let warnings = study.solution().map_or(&[][..], |(_, bound)| &bound.warnings);
+        print(&table(&setup.case.title, &levels, warnings, &folder))?;
     }
     verdict(&setup.name, arguments, &stop, &levels)
 }
@@ -233,7 +235,7 @@ fn values(levels: &[AdaptiveLevel], of: impl Fn(&AdaptiveLevel) -> Option<f64>) 
 }
 
 /// The history for the eye.
-fn table(title: &str, levels: &[AdaptiveLevel], folder: &Path) -> String {
+fn table(title: &str, levels: &[AdaptiveLevel], warnings: &[LoadWarning], folder: &Path) -> String {
     let mut text =
         format!("{title}\n  vertices    h min     bound  relative  effectivity  iterations  seconds\n");
     for level in levels {
@@ -253,6 +255,7 @@ fn table(title: &str, levels: &[AdaptiveLevel], folder: &Path) -> String {
     if let Some(slope) = exponent(later.iter().map(|level| [level.vertices as f64, level.bound])) {
         text += &format!("  the bound falls like vertices^{slope:.2} (later half; -0.50 is the best)\n");
     }
+    warnings.iter().for_each(|warning| text += &format!("  warning: {warning}\n"));
     let files = [SOLUTION, SUMMARY, MEMBRANES, TABLE, PICTURE, MESH].join(", ");
     text + &format!("  files: {}/{{{files}}}\n", folder.display())
 }

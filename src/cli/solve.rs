@@ -210,6 +210,7 @@ fn table(summary: &Summary, polish: Option<PolishReport>, folder: &Path, dual: b
             ),
         ),
         ("error", error_line(summary)),
+        ("warning", summary.warnings.join("; ")),
         ("energy", number(summary.energy)),
         (
             "contact",
@@ -256,7 +257,10 @@ fn solver_line(summary: &Summary) -> String {
 fn error_line(summary: &Summary) -> String {
     let Some(bound) = summary.error_bound else { return String::new() };
     let relative = match summary.relative_error_bound {
-        Some(relative) => format!("{:.2} %, guaranteed", 100.0 * relative),
+        Some(relative) if summary.warnings.is_empty() => {
+            format!("{:.2} %, guaranteed up to the quadrature of the loads", 100.0 * relative)
+        }
+        Some(relative) => format!("{:.2} %, if the loads are as the quadrature sees them", 100.0 * relative),
         None => "over half of it: refine".into(),
     };
     format!("at most {bound:.3e} in the energy norm ({relative})")

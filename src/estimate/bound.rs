@@ -19,23 +19,25 @@
 
 mod cells;
 mod trace;
-
-use std::f64::consts::PI;
+mod warning;
 
 use cells::{Cells, Sums};
 use trace::Trace;
+pub use warning::LoadWarning;
 
 use super::MeasureError;
 use crate::action::{Action, ContactSolution, extend_to_boundary};
 use crate::discretization::Discretization;
 use crate::flux::WedgeFluxes;
+use crate::geometry::friedrichs;
 use crate::mesh::VertexTriangles;
 use crate::problem::{ContactProblem, Domain};
 
 /// A guaranteed bound of the energy error `|||u - u_h||| = (sum_i mu_i |u_i - u_ih|_{H1}^2)^(1/2)`.
 ///
 /// Guaranteed up to the quadrature of loads and height: loads that are polynomials of degree 3 are integrated exactly, and of
-/// others the residual is known as well as the quadrature knows them.
+/// others the residual is known as well as the quadrature knows them. How well that is, a second rule says at other points
+/// ([`ErrorBound::warnings`]); what both do not meet, nobody sees.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ErrorBound {
     /// The bound. Unit: square root of an energy.
@@ -51,6 +53,11 @@ pub struct ErrorBound {
     /// The squared indicators `sum_i (a_{K,i} + b_{K,i})^2 + 2 a_{K,i} b_{K,i} + 2 (lt, w^)_K`: with `alpha_i = 0`, their sum is the
     /// square of the bound. Shape: `triangles`.
     pub indicators: Vec<f64>,
+    /// By how much the bound would grow at most, about, by what a second quadrature rule finds of each load; see
+    /// [`Discretization::quadrature_difference`]. Unit: square root of an energy.
+    pub quadrature_difference: [f64; 2],
+    /// The loads of which the quadrature may know too little for the bound to hold.
+    pub warnings: Vec<LoadWarning>,
 }
 
 /// What a bound consists of, each part as a norm of its own; the bound is at most the sum of the parts, with `boundary` and
@@ -86,7 +93,8 @@ impl ErrorBound {
     /// counts as the domain.
     ///
     /// # Errors
-    /// [`MeasureError::OtherMesh`] when the displacements are not over the vertices.
+    /// [`MeasureError::OtherMesh`] when the displacements are not over the vertices, [`MeasureError::Height`] and
+    /// [`MeasureError::Load`] when the data have no value at a point of the boundary.
     pub fn new(
         problem: &ContactProblem,
         domain: Option<&Domain>,
@@ -96,7 +104,7 @@ impl ErrorBound {
         MeasureError::check(d, displacement)?;
         let seen = Action::recover(d, displacement);
         let action = likely_action(d, displacement, &seen);
-        Ok(Self::with_action(problem, domain, d, displacement, &seen, action))
+        Self::with_action(problem, domain, d, displacement, &seen, action)
     }
 
     /// Bounds the error of a certified solution, with its own action: what was cut off of the action that the displacements
@@ -113,7 +121,7 @@ impl ErrorBound {
         MeasureError::check(d, solution.displacement())?;
         let seen = Action::recover(d, solution.displacement());
         let action = solution.lambda().to_vec();
-        Ok(Self::with_action(problem, domain, d, solution.displacement(), &seen, action))
+        Self::with_action(problem, domain, d, solution.displacement(), &seen, action)
     }
 
     /// With any `action >= 0` over vertices, zero on the boundary, where it is still to be continued to.
@@ -124,7 +132,7 @@ impl ErrorBound {
         displacement: &[Vec<f64>; 2],
         seen: &[Action],
         mut action: Vec<f64>,
-    ) -> Self {
+    ) -> Result<Self, MeasureError> {
         let rest_sq = rest_sq(d, seen, &action);
         extend_to_boundary(d, displacement, &mut action);
         let around = VertexTriangles::new(d.mesh().points().len(), d.mesh().triangles());
@@ -135,9 +143,10 @@ impl ErrorBound {
             fluxes: WedgeFluxes::new(d, &around, displacement, &action),
             trace: Trace::new(problem, domain, d, &around),
         };
-        let (sums, indicators) = cells.sum();
+        let (sums, indicators) = cells.sum()?;
+        let friedrichs = friedrichs(cells.sides());
         drop(cells);
-        Self::from_sums(d, &sums, friedrichs(d, domain), rest_sq, action, indicators)
+        Ok(Self::from_sums(d, &sums, friedrichs, rest_sq, action, indicators))
     }
 
     fn from_sums(
@@ -154,8 +163,11 @@ impl ErrorBound {
             (sums.indicators_sq[i].sqrt() + rest[i]).powi(2) + changes
         };
         let others = sums.products + sums.contact + sums.overlap;
+        let total = (of_membrane(0) + of_membrane(1) + 2.0 * others).sqrt();
         Self {
-            total: (of_membrane(0) + of_membrane(1) + 2.0 * others).sqrt(),
+            total,
+            quadrature_difference: d.quadrature_difference(),
+            warnings: LoadWarning::all(d, total),
             energy_norm: sums.energy_sq.sqrt(),
             parts: BoundParts {
                 flux: sums.flux_sq.sqrt(),
@@ -201,16 +213,6 @@ fn rest_sq(d: &Discretization, seen: &[Action], action: &[f64]) -> [f64; 2] {
         (0..2).for_each(|i| rest_sq[i] += d.dual_area()[a] * (from_membrane[i] - action[a]).powi(2));
     }
     rest_sq
-}
-
-/// `C_F` with `||v|| <= C_F |v|_{H1}` for functions that vanish on the boundary.
-fn friedrichs(d: &Discretization, domain: Option<&Domain>) -> f64 {
-    let (lower, upper) = d.mesh().bounding_box();
-    let sides = match domain {
-        Some(Domain::Disk { radius, .. }) => [2.0 * radius; 2],
-        _ => [upper[0] - lower[0], upper[1] - lower[1]],
-    };
-    1.0 / (PI * (1.0 / sides[0]).hypot(1.0 / sides[1]))
 }
 
 #[cfg(test)]

@@ -60,12 +60,17 @@ pub struct Summary {
     pub total_force_extended: Option<f64>,
     /// What was cut off to make the solution exactly complementary, relative; absent when not certified.
     pub cut_off: Option<CutOff>,
-    /// A guaranteed bound of the energy error; absent when not certified.
+    /// A bound of the energy error, guaranteed up to the quadrature of the loads; absent when not certified.
     pub error_bound: Option<f64>,
     /// The bound relative to the energy norm of the exact solution; absent also when it is too large to know that.
     pub relative_error_bound: Option<f64>,
     /// What the bound consists of; absent when not certified.
     pub error_parts: Option<BoundParts>,
+    /// By how much two quadrature rules differ in each load, in the same norm as the bound: zero for constant loads, and where it is
+    /// above the bound, that does not hold; absent when not certified.
+    pub quadrature_difference: Option<[f64; 2]>,
+    /// What makes the bound doubtful, in a sentence each.
+    pub warnings: Vec<String>,
     /// The energy norm of the solution; absent when not certified.
     pub energy_norm: Option<f64>,
     /// The relative residuals; absent when there was nothing to measure.
@@ -164,6 +169,8 @@ impl Summary {
             error_bound: bound.map(|bound| bound.total),
             relative_error_bound: bound.and_then(ErrorBound::relative),
             error_parts: bound.map(|bound| bound.parts),
+            quadrature_difference: bound.map(|bound| bound.quadrature_difference),
+            warnings: warnings(bound),
             energy_norm: bound.map(|bound| bound.energy_norm),
             residuals: residuals.map(ResidualSummary::from),
             residual_beyond_rounding: residuals.map(Residuals::beyond_rounding),
@@ -179,6 +186,10 @@ impl Summary {
         serde_json::to_writer_pretty(&mut out, self)?;
         writeln!(out)
     }
+}
+
+fn warnings(bound: Option<&ErrorBound>) -> Vec<String> {
+    bound.iter().flat_map(|bound| &bound.warnings).map(ToString::to_string).collect()
 }
 
 fn polish(statistics: &Statistics) -> Option<PolishSummary> {
