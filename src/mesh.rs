@@ -24,7 +24,7 @@ pub use refine::{Bisection, MeshFamily, Parents, Refinement};
 #[cfg(feature = "cli")]
 pub(crate) use generate::MAX_VERTICES;
 pub(crate) use refine::Circle;
-pub(crate) use topology::{HalfEdges, VertexTriangles};
+pub(crate) use topology::{HalfEdges, VertexTriangles, corner_of};
 
 /// Where a vertex lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,6 +1,6 @@
 //! The dual mesh `D_h` of section 4.2 and the triangulation `S_h` between it and `T_h`.
 
-use super::topology::Midpoints;
+use super::topology::{Midpoints, corner_of};
 use super::{Mesh, MeshError, VertexKind, VertexTriangles};
 use crate::geometry::twice_signed_area;
 
@@ -83,8 +83,7 @@ impl DualMesh {
         for &a in &vertices {
             let mut midpoint = 0;
             for &k in around.of(a) {
-                let i =
-                    mesh.triangles[k].iter().position(|&b| b == a).expect("a is a corner of its triangles");
+                let i = corner_of(mesh.triangles[k], a);
                 let [_, first, barycentre] = sub.mesh.triangles[6 * k + 2 * i];
                 let [_, _, next] = sub.mesh.triangles[6 * k + 2 * i + 1];
                 leaves[first] = (barycentre, next);
