@@ -6,6 +6,7 @@ mod pieces;
 mod quality;
 #[cfg(test)]
 mod tests;
+mod winding;
 
 use thiserror::Error;
 
