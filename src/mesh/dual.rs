@@ -20,7 +20,7 @@ impl SubTriangulation {
     /// Divides the triangles of `mesh`. Linear time.
     ///
     /// # Errors
-    /// [`MeshError`] when the parts are too small to be represented.
+    /// [`MeshError::TooSmall`] when parts of a triangle are too small to be told apart.
     pub fn new(mesh: &Mesh) -> Result<Self, MeshError> {
         let vertices = mesh.points.len();
         let midpoints = Midpoints::new(mesh);
@@ -37,7 +37,10 @@ impl SubTriangulation {
                 triangles.push([corners[i], barycentre, towards_previous]);
             }
         }
-        Ok(Self { mesh: Mesh::new(points, triangles)?, vertices, edges })
+        // Parts of a triangulation are one, up to rounding.
+        let divided = Mesh::new(points, triangles)
+            .map_err(|error| mesh.too_small(error.triangle().map_or(0, |part| part / 6)))?;
+        Ok(Self { mesh: divided, vertices, edges })
     }
 
     /// The sub-triangles as a mesh. Its points are the vertices of `T_h`, the midpoints of its edges, its barycentres.
