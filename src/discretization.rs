@@ -301,5 +301,15 @@ pub enum DiscretizationError {
     },
 }
 
+impl DiscretizationError {
+    /// The vertex that the error names.
+    pub fn vertex(&self) -> Option<usize> {
+        match *self {
+            Self::Height { vertex, .. } => Some(vertex),
+            Self::Load { .. } | Self::OutOfRange { .. } => None,
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests;

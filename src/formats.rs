@@ -3,4 +3,7 @@
 pub mod gmsh;
 pub(crate) mod matrix_market;
 pub(crate) mod npz;
+mod regular;
 pub(crate) mod vtk;
+
+pub use regular::{open_regular, read_regular};

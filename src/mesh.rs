@@ -18,7 +18,9 @@ pub use dual::{DualMesh, SubTriangulation};
 pub use generate::{
     GenerateError, MeshSize, Pattern, disk, estimated_vertices, generate, l_shape, polygon, rectangle,
 };
-pub use read::ReadError;
+#[cfg(feature = "cli")]
+pub(crate) use read::gmsh_nodes;
+pub use read::{GmshMesh, ReadError};
 pub use refine::{Bisection, MeshFamily, Parents, Refinement};
 
 #[cfg(feature = "cli")]

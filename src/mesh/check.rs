@@ -159,6 +159,46 @@ pub enum MeshError {
 }
 
 impl MeshError {
+    /// The vertices that the error names, each once, in the order in which they come.
+    pub fn vertices(&self) -> Vec<usize> {
+        let mut named = match *self {
+            Self::Coordinates { vertex, .. }
+            | Self::NoSuchVertex { vertex, .. }
+            | Self::OverlapAtVertex { vertex, .. } => vec![vertex],
+            Self::HangingVertex { vertex, edge: [a, b], .. } => vec![vertex, a, b],
+            Self::CoincidentVertices { first, second, .. } => vec![first, second],
+            Self::Overlap { edge, .. } => edge.to_vec(),
+            Self::Degenerate { corners, .. }
+            | Self::Duplicate { corners, .. }
+            | Self::TooSmall { corners, .. } => corners.to_vec(),
+            Self::Empty
+            | Self::Tiny { .. }
+            | Self::Crossing { .. }
+            | Self::Nested { .. }
+            | Self::NotGraded { .. } => vec![],
+        };
+        let mut seen = Vec::new();
+        named.retain(|a| {
+            !seen.contains(a) && {
+                seen.push(*a);
+                true
+            }
+        });
+        named
+    }
+
+    /// The triangles that the error names.
+    pub fn triangles(&self) -> Vec<usize> {
+        let second = match *self {
+            Self::Duplicate { second, .. } | Self::Overlap { second, .. } | Self::Crossing { second, .. } => {
+                Some(second)
+            }
+            Self::Nested { outer, .. } => Some(outer),
+            _ => None,
+        };
+        self.triangle().into_iter().chain(second).collect()
+    }
+
     /// The (first) triangle that the error names.
     pub fn triangle(&self) -> Option<usize> {
         match *self {

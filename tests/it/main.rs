@@ -20,6 +20,8 @@ mod layers;
 #[cfg(feature = "cli")]
 mod manifest;
 #[cfg(feature = "cli")]
+mod mesh_files;
+#[cfg(feature = "cli")]
 mod plate;
 #[cfg(feature = "cli")]
 mod program;
