@@ -348,5 +348,15 @@ pub enum DiscretizationError {
     },
 }
 
+impl DiscretizationError {
+    /// The vertex that the error names.
+    pub fn vertex(&self) -> Option<usize> {
+        match *self {
+            Self::Height { vertex, .. } => Some(vertex),
+            _ => None,
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests;

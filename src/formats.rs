@@ -7,5 +7,8 @@ pub(crate) mod matrix_market;
 pub(crate) mod npz;
 #[cfg(feature = "files")]
 pub(crate) mod qps;
+mod regular;
 #[cfg(feature = "files")]
 pub(crate) mod vtk;
+
+pub use regular::{open_regular, read_regular};

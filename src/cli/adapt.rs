@@ -1,17 +1,17 @@
 //! `membranes adapt`.
 
-use std::fs::File;
-use std::io::BufReader;
+use std::io::{self, BufReader};
 use std::path::Path;
 use std::time::Instant;
 
 use super::args::AdaptArguments;
 use super::case_file::BackendName;
 use super::clock::Clock;
+use super::input::{self, Input};
 use super::levels::{GOES_ON, KEPT, Levels, MEMORY, TIME, failure, origin};
 use super::memory::Memory;
 use super::progress::Progress;
-use super::setup::{Results, Setup, make_folder, options, solver, write_file};
+use super::setup::{Results, Setup, make_folder, options, solver, unused_groups, write_file};
 use super::solve::{PICTURE as MEMBRANES, SOLUTION, SUMMARY, write_solution};
 use super::terminal::{grouped, print};
 use super::watch::Watch;
@@ -83,7 +83,7 @@ pub(super) fn run(arguments: &AdaptArguments, watch: &Watch) -> Result<(), Failu
             Ok(level) => levels.push(level),
             Err(StudyError::Mesh(error @ MeshError::TooSmall { .. })) => break Stop::TooSmall(error),
             Err(error) if clock.has_stopped(&error) => break Stop::Time,
-            Err(error) => return Err(failure(&setup.name, &error)),
+            Err(error) => return Err(failure(&setup.name, &error, &setup.node_tags)),
         }
         kept.write(&levels)?;
         if let Some(checkpoint) = study.checkpoint() {
@@ -96,11 +96,11 @@ pub(super) fn run(arguments: &AdaptArguments, watch: &Watch) -> Result<(), Failu
     if study.solution().is_none() {
         (study, _) = resumed(&setup, &folder, levels.len())?;
     }
-    write_results(&folder, &setup.case, &study, &levels)?;
+    write_results(&folder, &setup, &study, &levels)?;
     drop(progress);
     if !arguments.case.quiet {
         let warnings = study.solution().map_or(&[][..], |(_, bound)| &bound.warnings);
-        print(&table(&setup.case.title, &levels, warnings, &folder))?;
+        print(&(table(&setup.case.title, &levels, warnings, &folder) + &unused_groups(&setup.groups)))?;
     }
     verdict(&setup.name, arguments, &stop, &levels)
 }
@@ -121,13 +121,20 @@ fn study(setup: &Setup) -> AdaptiveStudy {
 /// The study at the last of `levels` known levels that its checkpoint belongs to, and how many levels that are.
 fn resumed(setup: &Setup, folder: &Path, levels: usize) -> Result<(AdaptiveStudy, usize), Failure> {
     let mut study = study(setup);
-    let file = File::open(folder.join(CHECKPOINT));
-    // Without a checkpoint, or with one that is broken or of other levels, the run starts anew.
-    let Ok(Ok(checkpoint)) = file.map(|file| read_checkpoint(BufReader::new(file))) else {
-        return Ok((study, 0));
+    let path = folder.join(CHECKPOINT);
+    let file = match input::open(&path, Input::Arrays, setup.memory) {
+        Ok(file) => file,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok((study, 0)),
+        Err(error) => {
+            let remedy = "remove it, or name another folder with --out";
+            return Err(Failure::Input(format!("{}: {error}; {remedy}", path.display())));
+        }
     };
+    // With a checkpoint that is broken or of other levels, the run starts anew.
+    let Ok(checkpoint) = read_checkpoint(BufReader::new(file)) else { return Ok((study, 0)) };
     let known = checkpoint.marked.len() + 1;
-    let fits = known <= levels && study.resume(checkpoint).map_err(|error| failure(&setup.name, &error))?;
+    let fits = known <= levels
+        && study.resume(checkpoint).map_err(|error| failure(&setup.name, &error, &setup.node_tags))?;
     Ok((study, if fits { known } else { 0 }))
 }
 
@@ -192,10 +199,11 @@ fn percent(relative: Option<f64>) -> String {
 /// The solution on the last mesh as `membranes solve` writes it, that mesh and the errors as pictures.
 fn write_results(
     folder: &Path,
-    case: &CaseFile,
+    setup: &Setup,
     study: &AdaptiveStudy,
     levels: &[AdaptiveLevel],
 ) -> Result<(), Failure> {
+    let case = &setup.case;
     let (Some((solution, bound)), Some(last)) = (study.solution(), levels.last()) else { return Ok(()) };
     let failed = |name: &str, error: &dyn std::fmt::Display| Failure::Input(format!("{name}: {error}"));
     let mesh = study.mesh();
@@ -204,7 +212,8 @@ fn write_results(
     let mut results = Results::new(folder);
     write_solution(&mut results, &case.title, &d, solution, bound)?;
     let seconds = Seconds { bound: last.bound_seconds, ..Seconds::default() };
-    let summary = Summary::new(&case.title, &d, last.tolerance, Ok(solution), seconds, Some(bound));
+    let summary = Summary::new(&case.title, &d, last.tolerance, Ok(solution), seconds, Some(bound))
+        .with_unused_groups(&setup.groups);
 
     let sub = SubTriangulation::new(mesh).map_err(|error| failed(MESH, &error))?;
     let dual = DualMesh::new(mesh, &sub);

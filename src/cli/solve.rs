@@ -7,7 +7,7 @@ use super::Failure;
 use super::args::SolveArguments;
 use super::case_file::CaseFile;
 use super::progress::Progress;
-use super::setup::{Results, Setup, make_folder, options, solver};
+use super::setup::{Results, Setup, make_folder, options, solver, unused_groups};
 use super::terminal::{fields, fixed, grouped, print};
 use super::watch::Watch;
 use crate::action::{ContactSolution, Rejected};
@@ -68,17 +68,20 @@ pub(super) fn run(arguments: &SolveArguments, watch: &Watch) -> Result<(), Failu
             }
             let output = start.elapsed().as_secs_f64();
             let seconds = Seconds { bound: bound_seconds, output, ..seconds };
-            let summary = Summary::new(title, &d, tolerance, Ok(&solution), seconds, Some(&bound));
+            let summary = Summary::new(title, &d, tolerance, Ok(&solution), seconds, Some(&bound))
+                .with_unused_groups(&setup.groups);
             results.write(SUMMARY, |out| summary.write(out))?;
             results.publish()?;
             drop(progress);
             if !arguments.case.quiet {
-                print(&table(&summary, solution.statistics().polish, &folder, arguments.dual))?;
+                let table = table(&summary, solution.statistics().polish, &folder, arguments.dual);
+                print(&(table + &unused_groups(&setup.groups)))?;
             }
             Ok(())
         }
         Err(AccuracyError::Rejected(rejected, tolerance)) => {
-            let summary = Summary::new(title, &d, tolerance, Err(&rejected), seconds, None);
+            let summary = Summary::new(title, &d, tolerance, Err(&rejected), seconds, None)
+                .with_unused_groups(&setup.groups);
             Err(reject(&setup.name, &folder, &summary, &rejected))
         }
         Err(error) => Err(Failure::NotCertified(format!("{}: {error}", setup.name))),
@@ -100,7 +103,8 @@ fn too_late(
     };
     let rejected = Rejected::without_result(statistics);
     let tolerance = settings.tolerance.or_default();
-    let summary = Summary::new(&setup.case.title, d, tolerance, Err(&rejected), seconds, None);
+    let summary = Summary::new(&setup.case.title, d, tolerance, Err(&rejected), seconds, None)
+        .with_unused_groups(&setup.groups);
     let (name, folder) = (setup.name.clone(), folder.to_path_buf());
     move || reject(&name, &folder, &summary, &rejected)
 }

@@ -50,7 +50,7 @@ impl<'d> Multigrid<'d> {
         let mut finest = sub.mesh().clone();
         levels.push(Level::new(&finest, Parents::of_sub_triangulation(d.mesh(), sub)));
         for _ in 0..refinements {
-            let Refinement { mesh, parents } = finest.refine();
+            let Refinement { mesh, parents } = finest.refine()?;
             levels.push(Level::new(&mesh, Parents { midpoints: parents, barycentres: Vec::new() }));
             finest = mesh;
         }

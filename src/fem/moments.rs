@@ -7,7 +7,7 @@ use super::dual_norm::dual_norm;
 use super::quadrature::DEGREE_4;
 use super::second_rule::SecondRule;
 use crate::geometry::{poincare, twice_signed_area};
-use crate::mesh::{Mesh, VertexTriangles};
+use crate::mesh::{Mesh, VertexTriangles, corner_of};
 use crate::problem::{EvaluationError, Function};
 
 /// Triangles whose quadrature points are evaluated together.
@@ -98,10 +98,7 @@ impl LoadMoments {
 
     /// The load vector: the sums of the integrals around the vertices.
     pub(crate) fn vector(&self, mesh: &Mesh, around: &VertexTriangles) -> Vec<f64> {
-        let on_element = |t: usize, a: usize| {
-            let corner = mesh.triangles()[t].iter().position(|&b| b == a);
-            self.on(mesh, t).integrals[corner.expect("a is a corner of the triangles around it")]
-        };
+        let on_element = |t: usize, a: usize| self.on(mesh, t).integrals[corner_of(mesh.triangles()[t], a)];
         let at = |a: usize| around.of(a).iter().map(|&t| on_element(t, a)).sum();
         (0..mesh.points().len()).into_par_iter().map(at).collect()
     }

@@ -7,6 +7,7 @@ use serde::Serialize;
 use crate::action::{ContactSolution, CutOff, Rejected, Residuals};
 use crate::discretization::Discretization;
 use crate::estimate::{BoundParts, ErrorBound};
+use crate::formats::gmsh::PhysicalGroup;
 use crate::solver::Statistics;
 
 /// The contents of `summary.json`, field by field. Other programs read the names.
@@ -77,6 +78,8 @@ pub struct Summary {
     pub residuals: Option<ResidualSummary>,
     /// The largest of them beyond the rounding of the terms that cancel there: what is held against the tolerance.
     pub residual_beyond_rounding: Option<f64>,
+    /// The physical groups of the mesh file that the run has not used: names, or what they consist of and their numbers.
+    pub unused_groups: Vec<String>,
     /// Where the time went.
     pub seconds: Seconds,
 }
@@ -174,8 +177,14 @@ impl Summary {
             energy_norm: bound.map(|bound| bound.energy_norm),
             residuals: residuals.map(ResidualSummary::from),
             residual_beyond_rounding: residuals.map(Residuals::beyond_rounding),
+            unused_groups: Vec::new(),
             seconds,
         }
+    }
+
+    /// The same with the physical groups that were not used.
+    pub fn with_unused_groups(self, groups: &[PhysicalGroup]) -> Self {
+        Self { unused_groups: groups.iter().map(PhysicalGroup::to_string).collect(), ..self }
     }
 
     /// Writes it as JSON.

@@ -15,6 +15,7 @@ mod hostile_numbers;
 mod invariance;
 mod layers;
 mod manifest;
+mod mesh_files;
 mod plate;
 mod program;
 mod readme;

@@ -70,7 +70,7 @@ fn the_iteration_agrees_with_a_direct_solve() {
     for mesh in [square(1), square(2), irregular(5), l_shape(1.0, 3, Default::default()).unwrap()] {
         let norm = norm_on(&mesh, 1, rho);
         let sub = SubTriangulation::new(&mesh).unwrap();
-        let fine = sub.mesh().refine().mesh;
+        let fine = sub.mesh().refine().unwrap().mesh;
         for (mesh, figure) in [(sub.mesh(), norm.coarser), (&fine, norm.value)] {
             let free: Vec<usize> =
                 (0..mesh.points().len()).filter(|&a| mesh.kind()[a] == VertexKind::Interior).collect();

@@ -120,8 +120,8 @@ fn on_random_polygons_against_a_finer_solution() {
         let d = Discretization::new(&problem, coarse.clone()).unwrap();
         let solution = solve(&d);
         let found = ErrorBound::new(&problem, None, &d, solution.displacement()).unwrap().total;
-        let first = coarse.refine();
-        let second = first.mesh.refine();
+        let first = coarse.refine().unwrap();
+        let second = first.mesh.refine().unwrap();
         let mut difference = solution.displacement().clone();
         for parents in [&first.parents, &second.parents] {
             for u in &mut difference {
