@@ -88,7 +88,7 @@ impl Mesh {
 }
 
 /// What numbers Gmsh has for vertices that a message names, to be put behind it; empty where no number is known.
-#[cfg(feature = "cli")]
+#[cfg(any(test, feature = "cli"))]
 pub(crate) fn gmsh_nodes(vertices: &[usize], node_tags: &[u64]) -> String {
     in_gmsh(&[], &with_tags(vertices, node_tags))
 }
