@@ -190,7 +190,7 @@ mod tests {
     fn a_ring_may_be_closed_by_its_first_vertex() {
         let closed = |ring: Vec<[f64; 2]>| [ring.as_slice(), &ring[..1]].concat();
         let (outer, hole) = (square(0.0, 0.0, 1.0), square(0.4, 0.3, 0.2));
-        let open = polygon(&outer, &[hole.clone()], 0.2, 25.0).unwrap();
+        let open = polygon(&outer, std::slice::from_ref(&hole), 0.2, 25.0).unwrap();
         let mesh = polygon(&closed(outer.clone()), &[closed(hole)], 0.2, 25.0).unwrap();
         assert_eq!((mesh.points(), mesh.triangles()), (open.points(), open.triangles()));
         // Closed twice, it passes through that vertex twice; two vertices are none the more a polygon for being closed.
