@@ -4,12 +4,9 @@ use std::collections::HashSet;
 
 use spade::{AngleLimit, ConstrainedDelaunayTriangulation, Point2, RefinementParameters, Triangulation};
 
+use super::error::{GenerateError, MAX_MIN_ANGLE, check_vertex_estimate};
 use crate::geometry::ring_area;
 use crate::mesh::Mesh;
-use crate::mesh::generate::{GenerateError, check_vertex_estimate};
-
-/// Ruppert's algorithm ends for angles up to about 33 degrees; 30 is what it reaches on any input in practice.
-pub(in crate::mesh) const MAX_MIN_ANGLE: f64 = 30.0;
 
 /// So many vertices may always be added: a coarse mesh need not be as coarse as `size` allows.
 const LEEWAY: usize = 10_000;
