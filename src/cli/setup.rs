@@ -120,7 +120,7 @@ fn make_mesh(name: &str, case: &CaseFile, further: usize, memory: Memory) -> Res
     let (mut node_tags, mut groups) = (Vec::new(), Vec::new());
     let mut family = match &case.mesh {
         MeshSource::File(path) => {
-            let read = read_mesh(name, path, memory, &check)?;
+            let read = read_mesh(name, path, memory, check)?;
             (node_tags, groups) = (read.node_tags, read.groups);
             MeshFamily::polygonal(read.mesh)
         }

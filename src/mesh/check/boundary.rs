@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 use std::f64::consts::TAU;
 
-use super::MeshError;
 use super::boxes::{Bounds, BoxIndex};
+use super::error::MeshError;
 use super::size::resolution;
 use crate::geometry::{distance_sq, twice_signed_area};
 

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::MeshError;
 use super::boundary::{Boundary, BoundaryEdge};
+use super::error::MeshError;
 use super::winding::{Winding, wind};
 
 /// A piece of the mesh, for its name and its place.

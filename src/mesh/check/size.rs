@@ -1,7 +1,7 @@
 //! How small a triangle may be: one measure for meshes that are given and for those that are made.
 
 use crate::geometry::{distance_sq, twice_signed_area};
-use crate::mesh::{Mesh, MeshError};
+use crate::mesh::Mesh;
 
 /// A triangle whose doubled area is below this fraction of its longest edge squared is degenerate. Rounding of the
 /// coordinates moves that fraction by about 1e-16; a sliver of 0.01 degrees has 1.7e-4.
@@ -76,13 +76,6 @@ impl Smallest {
     pub(in crate::mesh) fn has_edges_apart(self, [a, b, c]: [[f64; 2]; 3]) -> bool {
         let shortest_sq = distance_sq(a, b).min(distance_sq(b, c)).min(distance_sq(c, a));
         shortest_sq >= self.edge * self.edge
-    }
-}
-
-impl Mesh {
-    /// The error of parts of `triangle` that are too small.
-    pub(in crate::mesh) fn too_small(&self, triangle: usize) -> MeshError {
-        MeshError::TooSmall { triangle, corners: self.triangles()[triangle] }
     }
 }
 

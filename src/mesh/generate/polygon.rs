@@ -4,12 +4,9 @@ use std::collections::HashSet;
 
 use spade::{AngleLimit, ConstrainedDelaunayTriangulation, Point2, RefinementParameters, Triangulation};
 
+use super::error::{GenerateError, MAX_MIN_ANGLE, check_vertex_estimate};
 use crate::geometry::ring_area;
 use crate::mesh::Mesh;
-use crate::mesh::generate::{GenerateError, check_vertex_estimate};
-
-/// Ruppert's algorithm ends for angles up to about 33 degrees; 30 is what it reaches on any input in practice.
-pub(in crate::mesh) const MAX_MIN_ANGLE: f64 = 30.0;
 
 /// So many vertices may always be added: a coarse mesh need not be as coarse as `size` allows.
 const LEEWAY: usize = 10_000;
@@ -190,7 +187,7 @@ mod tests {
     fn a_ring_may_be_closed_by_its_first_vertex() {
         let closed = |ring: Vec<[f64; 2]>| [ring.as_slice(), &ring[..1]].concat();
         let (outer, hole) = (square(0.0, 0.0, 1.0), square(0.4, 0.3, 0.2));
-        let open = polygon(&outer, &[hole.clone()], 0.2, 25.0).unwrap();
+        let open = polygon(&outer, std::slice::from_ref(&hole), 0.2, 25.0).unwrap();
         let mesh = polygon(&closed(outer.clone()), &[closed(hole)], 0.2, 25.0).unwrap();
         assert_eq!((mesh.points(), mesh.triangles()), (open.points(), open.triangles()));
         // Closed twice, it passes through that vertex twice; two vertices are none the more a polygon for being closed.

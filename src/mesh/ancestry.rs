@@ -1,9 +1,5 @@
 //! How the vertices of a mesh come from those of a coarser one.
 
-use std::sync::Arc;
-
-use crate::mesh::Mesh;
-
 /// The vertices of a mesh as vertices of a coarser mesh and midpoints of its edges.
 ///
 /// The prolongation of a P1 function takes the mean of its values at the two ends; on uniform and bisected meshes the
@@ -41,31 +37,6 @@ impl Parents {
     /// Shape: `vertices x 2`.
     pub fn ends(&self) -> &[[u32; 2]] {
         &self.ends
-    }
-}
-
-impl Mesh {
-    /// The refinements that made this mesh, from the coarsest mesh to this one; empty when none is known. Multigrid and
-    /// nested iteration run along them.
-    pub fn ancestry(&self) -> &[Arc<Parents>] {
-        &self.ancestry
-    }
-
-    /// The same mesh, with its ancestry known.
-    ///
-    /// # Panics
-    /// When the last refinement does not lead to this mesh.
-    pub(in crate::mesh) fn with_ancestry(mut self, ancestry: Vec<Arc<Parents>>) -> Self {
-        let vertices = ancestry.last().map(|parents| parents.ends.len());
-        assert!(vertices.is_none_or(|vertices| vertices == self.points.len()), "parents of every vertex");
-        self.ancestry = ancestry;
-        self
-    }
-
-    /// The ancestry of a refinement of this mesh.
-    pub(in crate::mesh) fn ancestry_of_refinement(&self, midpoints: &[[usize; 2]]) -> Vec<Arc<Parents>> {
-        let parents = Parents::of_refinement(self.points.len(), midpoints);
-        self.ancestry.iter().cloned().chain([Arc::new(parents)]).collect()
     }
 }
 
