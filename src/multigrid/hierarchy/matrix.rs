@@ -1,11 +1,11 @@
 //! Symmetric matrices in compact rows.
 
 use rayon::prelude::*;
+use sprs::CsMat;
 
 use super::galerkin::RowSum;
 use super::inverse;
 use super::runs::{LONGEST, Runs};
-use crate::discretization::Discretization;
 use crate::mesh::VertexKind;
 
 /// Rows that are made together.
@@ -222,9 +222,7 @@ pub(crate) fn reordered(
 }
 
 /// `K` with empty rows for held vertices, the vertices in this order.
-pub(crate) fn compact_stiffness(d: &Discretization, order: &[u32]) -> (Pattern, Values) {
-    let k = d.stiffness();
-    let kind = d.mesh().kind();
+pub(crate) fn compact_stiffness(k: &CsMat<f64>, kind: &[VertexKind], order: &[u32]) -> (Pattern, Values) {
     let position = inverse(order);
     let block = |block: &[u32]| {
         let mut rows = Rows::with_capacity(BLOCK);
