@@ -1,4 +1,13 @@
 //! The linear cycle on the coarser levels, truncated.
+//!
+//! No part of it raises the energy `1/2 x'A x - b'x` of its level: a relaxation makes it least in one coordinate (where truncation
+//! has coupled rows of a colour, one row after the other); the level below has the matrix `P'A P` and the whole residual
+//! `P'(b - A x)`, so that a correction with an energy of at most zero there changes the energy here by as much; and the direct
+//! solve at the bottom makes least an energy that is larger by a fraction of the diagonal, which is zero at zero. So the correction
+//! lowers the energy of the finest level too, as long as the obstacle does not cut it off: only then it has to be looked at.
+
+#[cfg(test)]
+mod tests;
 
 use super::direct::Direct;
 use super::sweep::{ascend, descend};
@@ -50,9 +59,9 @@ impl Matrices<'_> {
 }
 
 impl<'h> CoarseLevels<'h> {
-    /// With an `obstacle` they can be truncated.
-    pub(crate) fn new(hierarchy: &'h Hierarchy, obstacle: bool) -> Result<Self, NotFactored> {
-        let coarser = || hierarchy.levels()[..hierarchy.finest()].iter();
+    /// The levels `0..levels`; with an `obstacle` they can be truncated.
+    pub(crate) fn new(hierarchy: &'h Hierarchy, levels: usize, obstacle: bool) -> Result<Self, NotFactored> {
+        let coarser = || hierarchy.levels()[..levels].iter();
         let zeros = || coarser().map(|level| vec![0.0; level.pattern.rows()]).collect();
         let matrices = match obstacle {
             true => Matrices::Truncated(Truncation::new(hierarchy)),
@@ -98,6 +107,13 @@ impl<'h> CoarseLevels<'h> {
         }
         let visits = visits(self.hierarchy, finest, twice_up_to);
         self.cycle(finest - 1, &visits)
+    }
+
+    /// A cycle on level `l` for the functional `b`, with one correction from each level below.
+    pub(super) fn v_cycle(&mut self, l: usize, b: &[f64]) -> Result<&[f64], NotFactored> {
+        self.b[l].copy_from_slice(b);
+        self.cycle(l, &vec![1; l + 1])?;
+        Ok(&self.x[l])
     }
 
     /// A cycle on level `l` from zero.

@@ -16,7 +16,7 @@ mod tests;
 
 pub(crate) use coloring::Coloring;
 pub(crate) use galerkin::RowSum;
-pub(crate) use genealogy::Genealogy;
+pub(crate) use genealogy::{Genealogy, Mean};
 pub(crate) use matrix::{Pattern, Values};
 pub(crate) use runs::{LONGEST, Runs};
 pub(crate) use transfer::Transfer;
@@ -27,7 +27,6 @@ use sprs::CsMat;
 use crate::discretization::Discretization;
 use crate::mesh::VertexKind;
 use coarsening::coarsened;
-use genealogy::NONE;
 use galerkin::galerkin;
 use matrix::{BLOCK, compact_stiffness, reordered};
 use ordering::{banded_order, is_banded};
@@ -189,13 +188,11 @@ fn transfer(
     number: &[u32],
 ) -> Transfer {
     let mean = |&a: &u32| {
-        let vertices = match genealogy.is_on_level(a, generation) {
-            true => [a, NONE, NONE],
-            false => genealogy.parents(a),
-        };
-        vertices.map(|b| if b == NONE { NONE } else { number[b as usize] })
+        let is_kept = genealogy.is_on_level(a, generation);
+        let vertices = if is_kept { Mean::of_one(a) } else { genealogy.parents(a) };
+        vertices.renumbered(number)
     };
-    let means: Vec<[u32; 3]> = of_row.par_iter().with_min_len(BLOCK).map(mean).collect();
+    let means: Vec<Mean> = of_row.par_iter().with_min_len(BLOCK).map(mean).collect();
     Transfer::from_means(coarse_rows, &means)
 }
 
@@ -275,6 +272,7 @@ impl Level {
     /// to a fraction `same_entry` of the diagonal.
     fn new(pattern: Pattern, mut values: Values, coloring: Coloring, same_entry: f64) -> Self {
         let (runs, shared) = Runs::new(&coloring, &pattern, &values, same_entry);
+        values.replaced = vec![false; shared.len()];
         values.shared = shared;
         Self { pattern, values, coloring, runs, transfer: Transfer::default() }
     }

@@ -5,15 +5,50 @@
 //! are nobody's parent any more, wherever they are. On uniform refinements these are the coarser meshes; where a mesh is refined
 //! here and there, every part of it becomes coarser at once (compare Chen, Zhang, J. Comput. Math. 28 (2010) 767).
 
+use std::sync::Arc;
+
 use crate::mesh::{Mesh, Parents};
 
-/// In place of a parent that is not there.
+/// In place of a vertex that is not there.
 pub(super) const NONE: u32 = u32::MAX;
+
+/// One to three vertices, of whose values another one takes the mean; [`NONE`] behind them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Mean([u32; 3]);
+
+impl Mean {
+    pub(crate) fn of_one(a: u32) -> Self {
+        Self([a, NONE, NONE])
+    }
+
+    pub(crate) fn of_two(a: usize, b: usize) -> Self {
+        Self([a as u32, b as u32, NONE])
+    }
+
+    pub(crate) fn of_three(corners: [usize; 3]) -> Self {
+        Self(corners.map(|a| a as u32))
+    }
+
+    /// Of no vertex: that of a mesh of which no coarser one is known.
+    const fn of_none() -> Self {
+        Self([NONE; 3])
+    }
+
+    /// The vertices.
+    pub(super) fn vertices(&self) -> &[u32] {
+        &self.0[..self.0.iter().take_while(|&&a| a != NONE).count()]
+    }
+
+    /// The same by other numbers.
+    pub(super) fn renumbered(&self, number: &[u32]) -> Self {
+        Self(self.0.map(|a| if a == NONE { NONE } else { number[a as usize] }))
+    }
+}
 
 /// For each vertex of a mesh the vertices of coarser ones whose mean it is.
 pub(crate) struct Genealogy {
-    /// At most three; [`NONE`] behind them. A vertex of the coarsest mesh known has none.
-    parents: Vec<[u32; 3]>,
+    /// A vertex of the coarsest mesh known has no parents.
+    parents: Vec<Mean>,
     /// How many generations of descendants a vertex has.
     height: Vec<u16>,
     /// The vertices of the coarsest mesh known, in its numbering.
@@ -24,42 +59,42 @@ impl Genealogy {
     /// Of a mesh of which no coarser one is known.
     pub(crate) fn unknown(vertices: usize) -> Self {
         let coarsest = (0..vertices as u32).collect();
-        Self { parents: vec![[NONE; 3]; vertices], height: vec![0; vertices], coarsest }
+        Self { parents: vec![Mean::of_none(); vertices], height: vec![0; vertices], coarsest }
     }
 
     /// Of a mesh with its ancestry.
     pub(crate) fn of(mesh: &Mesh) -> Self {
         let mut genealogy = Self::unknown(mesh.points().len());
-        mesh.ancestry().iter().rev().for_each(|parents| genealogy.go_back(parents));
+        genealogy.follow(mesh.ancestry());
         genealogy
     }
 
-    /// The coarsest mesh known is a refinement of one that is coarser still.
-    fn go_back(&mut self, parents: &Parents) {
-        let of_vertex = |&[a, b]: &[u32; 2]| if a == b { [a, NONE, NONE] } else { [a, b, NONE] };
-        self.go_back_by(parents.coarse_vertices(), parents.ends().iter().map(of_vertex));
+    /// The coarsest mesh known has this ancestry.
+    pub(crate) fn follow(&mut self, ancestry: &[Arc<Parents>]) {
+        let mean = |&[a, b]: &[u32; 2]| if a == b { Mean::of_one(a) } else { Mean([a, b, NONE]) };
+        for parents in ancestry.iter().rev() {
+            self.go_back(parents.coarse_vertices(), parents.ends().iter().map(mean));
+        }
     }
 
-    /// Likewise, from the one to three vertices whose mean each is, in the numbering of the coarser mesh.
-    pub(crate) fn go_back_by(
-        &mut self,
-        coarse_vertices: usize,
-        means: impl Iterator<Item = [u32; 3]> + Clone,
-    ) {
+    /// The coarsest mesh known has the vertices of a coarser one first, and then the means of such vertices.
+    pub(crate) fn refines(&mut self, coarse_vertices: usize, means: &[Mean]) {
+        let kept = (0..coarse_vertices as u32).map(Mean::of_one);
+        self.go_back(coarse_vertices, kept.chain(means.iter().copied()));
+    }
+
+    /// The vertices of the coarsest mesh known come from those of a coarser one, in whose numbering the means are.
+    fn go_back(&mut self, coarse_vertices: usize, means: impl Iterator<Item = Mean> + Clone) {
         let mut coarser = vec![NONE; coarse_vertices];
-        let is_kept = |[_, second, _]: [u32; 3]| second == NONE;
         for (&a, mean) in self.coarsest.iter().zip(means.clone()) {
-            if is_kept(mean) {
-                coarser[mean[0] as usize] = a;
+            if let [same] = mean.vertices() {
+                coarser[*same as usize] = a;
             }
         }
-        for (&a, mean) in self.coarsest.iter().zip(means) {
-            if is_kept(mean) {
-                continue;
-            }
-            let parents = mean.map(|c| if c == NONE { NONE } else { coarser[c as usize] });
+        for (&a, mean) in self.coarsest.iter().zip(means).filter(|(_, mean)| mean.vertices().len() > 1) {
+            let parents = mean.renumbered(&coarser);
             let height = self.height[a as usize] + 1;
-            for parent in parents.into_iter().filter(|&parent| parent != NONE) {
+            for &parent in parents.vertices() {
                 let of_parent = &mut self.height[parent as usize];
                 *of_parent = height.max(*of_parent);
             }
@@ -68,14 +103,14 @@ impl Genealogy {
         self.coarsest = coarser;
     }
 
-    /// The parents of a vertex, [`NONE`] behind them.
-    pub(super) fn parents(&self, a: u32) -> [u32; 3] {
+    /// The parents of a vertex.
+    pub(super) fn parents(&self, a: u32) -> Mean {
         self.parents[a as usize]
     }
 
     /// Whether a vertex is one of the coarsest mesh known.
     pub(super) fn is_root(&self, a: u32) -> bool {
-        self.parents[a as usize][0] == NONE
+        self.parents[a as usize] == Mean::of_none()
     }
 
     /// Whether a vertex belongs to the level that is so many generations below the finest one.

@@ -26,8 +26,8 @@ pub(super) fn banded_order(k: &CsMat<f64>, genealogy: &Genealogy) -> Vec<u32> {
     }
     for a in genealogy.eldest_first().into_iter().filter(|&a| !genealogy.is_root(a)) {
         let parents = genealogy.parents(a);
-        let known = || parents.iter().filter(|&&parent| parent != NONE);
-        place[a as usize] = known().map(|&b| place[b as usize]).sum::<f64>() / known().count() as f64;
+        let sum: f64 = parents.vertices().iter().map(|&b| place[b as usize]).sum();
+        place[a as usize] = sum / parents.vertices().len() as f64;
     }
     let mut sorted: Vec<(f64, u32)> = place.into_iter().zip(0..).collect();
     sorted.par_sort_unstable_by(|(p, a), (q, b)| p.total_cmp(q).then(a.cmp(b)));
@@ -46,8 +46,8 @@ fn edges_of_roots(k: &CsMat<f64>, genealogy: &Genealogy) -> Vec<[u32; 2]> {
         let row = k.indptr().outer_inds_sz(a as usize);
         k.indices()[row].iter().map(move |&b| [a, b as u32]).filter(|[a, b]| a < b)
     });
-    let midpoints = (0..k.rows() as u32).map(|a| genealogy.parents(a));
-    let ends = midpoints.filter(|parents| parents[1] != NONE && parents[2] == NONE).map(|[a, b, _]| [a, b]);
+    let parents = (0..k.rows() as u32).map(|a| genealogy.parents(a));
+    let ends = parents.filter_map(|parents| <[u32; 2]>::try_from(parents.vertices()).ok());
     let edges = entries.chain(ends).map(|[a, b]| edge(a, b));
     edges.filter(|ends| ends.iter().all(|&end| end != NONE)).collect()
 }

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::genealogy::NONE;
+use super::genealogy::Mean;
 
 /// Rows that are gathered together.
 const BLOCK: usize = 4096;
@@ -87,12 +87,11 @@ impl Parents {
 }
 
 impl Rows {
-    fn of_means(means: &[[u32; 3]]) -> Self {
+    fn of_means(means: &[Mean]) -> Self {
         let mut rows = Self { start: vec![0], ..Self::default() };
-        for mean in means {
-            let count = mean.iter().filter(|&&a| a != NONE).count();
-            rows.index.extend(&mean[..count]);
-            rows.weight.extend(std::iter::repeat_n(1.0 / count as f64, count));
+        for vertices in means.iter().map(Mean::vertices) {
+            rows.index.extend_from_slice(vertices);
+            rows.weight.extend(std::iter::repeat_n(1.0 / vertices.len() as f64, vertices.len()));
             rows.start.push(rows.index.len() as u32);
         }
         rows
@@ -145,24 +144,28 @@ impl Transfer {
         Self::new(same_vertex, Parents::Weighted(Rows { start, index, weight }))
     }
 
-    /// Each row takes the mean of its values at one to three coarse vertices; [`NONE`] behind them.
-    pub(super) fn from_means(coarse_rows: usize, means: &[[u32; 3]]) -> Self {
+    /// Each row takes the mean of its values at some coarse vertices.
+    pub(crate) fn from_means(coarse_rows: usize, means: &[Mean]) -> Self {
         let mut same_vertex = vec![0; coarse_rows];
-        for (&[a, b, _], i) in means.iter().zip(0..) {
-            if b == NONE {
-                same_vertex[a as usize] = i;
+        for (mean, i) in means.iter().zip(0..) {
+            if let [a] = mean.vertices() {
+                same_vertex[*a as usize] = i;
             }
         }
-        if means.iter().any(|&[.., c]| c != NONE) {
+        if means.iter().any(|mean| mean.vertices().len() > 2) {
             return Self::new(same_vertex, Parents::Weighted(Rows::of_means(means)));
         }
-        let ends = |&[a, b, _]: &[u32; 3]| if b == NONE { [a, a] } else { [a, b] };
+        let ends = |mean: &Mean| match *mean.vertices() {
+            [a, b] => [a, b],
+            [a, ..] => [a, a],
+            [] => unreachable!("a mean is one of vertices"),
+        };
         Self::new(same_vertex, Parents::Edges(means.iter().map(ends).collect()))
     }
 
     /// The level is its own coarser level.
     pub(crate) fn identity(rows: usize) -> Self {
-        let means: Vec<_> = (0..rows as u32).map(|a| [a, NONE, NONE]).collect();
+        let means: Vec<_> = (0..rows as u32).map(Mean::of_one).collect();
         Self::from_means(rows, &means)
     }
 
