@@ -13,6 +13,7 @@ mod check;
 mod clock;
 mod converge;
 mod export;
+mod input;
 mod levels;
 mod memory;
 mod progress;

@@ -18,13 +18,15 @@ pub use dual::{DualMesh, SubTriangulation};
 pub use generate::{
     GenerateError, MeshSize, Pattern, disk, estimated_vertices, generate, l_shape, polygon, rectangle,
 };
-pub use read::ReadError;
+#[cfg(feature = "cli")]
+pub(crate) use read::gmsh_nodes;
+pub use read::{GmshMesh, ReadError};
 pub use refine::{Bisection, MeshFamily, Parents, Refinement};
 
 #[cfg(feature = "cli")]
 pub(crate) use generate::MAX_VERTICES;
 pub(crate) use refine::Circle;
-pub(crate) use topology::{HalfEdges, VertexTriangles};
+pub(crate) use topology::{HalfEdges, VertexTriangles, corner_of};
 
 /// Where a vertex lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -14,7 +14,7 @@ mod function;
 pub use cases::{Case, CaseError, ExactSolution, Parameter, Range};
 pub use domain::Domain;
 pub use expression::{Expression, ExpressionError};
-pub use function::Function;
+pub use function::{EvaluationError, Function};
 
 use thiserror::Error;
 

@@ -15,7 +15,6 @@ pub use qp_solver::QpSolver;
 
 use std::time::{Duration, Instant};
 
-use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::discretization::Discretization;
@@ -150,7 +149,8 @@ impl StartingPoint {
 }
 
 /// How a candidate was found.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub struct Statistics {
     /// The solver's name.
     pub solver: String,
@@ -166,13 +166,13 @@ pub struct Statistics {
     /// Which solver was chosen and why, when that was left open.
     pub choice: Option<String>,
     /// What was tried before and stalled, in this order. Its seconds are among those below.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[cfg_attr(feature = "files", serde(default, skip_serializing_if = "Vec::is_empty"))]
     pub stalled: Vec<Stalled>,
     /// Seconds spent before the first iteration. Not kept with the rest: they are another number in each run.
-    #[serde(skip)]
+    #[cfg_attr(feature = "files", serde(skip))]
     pub setup_seconds: f64,
     /// Seconds spent iterating, the polish included. Likewise.
-    #[serde(skip)]
+    #[cfg_attr(feature = "files", serde(skip))]
     pub solve_seconds: f64,
     /// What the polish did; `None` when it was not asked for or has nothing to do.
     pub polish: Option<PolishReport>,
@@ -210,7 +210,8 @@ impl Statistics {
 }
 
 /// A method that has made no more progress.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub struct Stalled {
     /// The method, and the levels on which it ran.
     pub method: String,

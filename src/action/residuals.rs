@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 use super::Action;
 use super::sums::sums;
@@ -183,7 +183,8 @@ fn hat_integrals(d: &Discretization) -> Vec<f64> {
         integrals
     };
     let triangles = d.mesh().triangles().len();
-    let (mut integrals, others) = rayon::join(|| over(0..triangles / 2), || over(triangles / 2..triangles));
+    let (mut integrals, others) =
+        crate::parallel::join(|| over(0..triangles / 2), || over(triangles / 2..triangles));
     integrals.iter_mut().zip(others).for_each(|(integral, other)| *integral += other);
     integrals
 }

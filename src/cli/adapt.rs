@@ -1,22 +1,22 @@
 //! `membranes adapt`.
 
-use std::fs::File;
-use std::io::BufReader;
+use std::io::{self, BufReader};
 use std::path::Path;
 use std::time::Instant;
 
 use super::args::AdaptArguments;
 use super::case_file::BackendName;
 use super::clock::Clock;
+use super::input::{self, Input};
 use super::levels::{GOES_ON, KEPT, Levels, MEMORY, TIME, failure, origin};
 use super::memory::Memory;
 use super::progress::Progress;
-use super::setup::{Results, Setup, make_folder, options, solver, write_file};
+use super::setup::{Results, Setup, make_folder, options, solver, unused_groups, write_file};
 use super::solve::{PICTURE as MEMBRANES, SOLUTION, SUMMARY, write_solution};
 use super::terminal::{grouped, print};
 use super::watch::Watch;
 use super::{CaseFile, Failure};
-use crate::discretization::Discretization;
+use crate::estimate::LoadWarning;
 use crate::mesh::{DualMesh, MeshError, SubTriangulation};
 use crate::output::{Seconds, Summary, read_checkpoint, write_checkpoint};
 use crate::pictures::{MeshPicture, RatesPicture, Series, render_rates, render_triangulation};
@@ -82,7 +82,7 @@ pub(super) fn run(arguments: &AdaptArguments, watch: &Watch) -> Result<(), Failu
             Ok(level) => levels.push(level),
             Err(StudyError::Mesh(error @ MeshError::TooSmall { .. })) => break Stop::TooSmall(error),
             Err(error) if clock.has_stopped(&error) => break Stop::Time,
-            Err(error) => return Err(failure(&setup.name, &error)),
+            Err(error) => return Err(failure(&setup.name, &error, &setup.node_tags)),
         }
         kept.write(&levels)?;
         if let Some(checkpoint) = study.checkpoint() {
@@ -95,10 +95,11 @@ pub(super) fn run(arguments: &AdaptArguments, watch: &Watch) -> Result<(), Failu
     if study.solution().is_none() {
         (study, _) = resumed(&setup, &folder, levels.len())?;
     }
-    write_results(&folder, &setup.case, &study, &levels)?;
+    write_results(&folder, &setup, &study, &levels)?;
     drop(progress);
     if !arguments.case.quiet {
-        print(&table(&setup.case.title, &levels, &folder))?;
+        let warnings = study.solution().map_or(&[][..], |(_, bound)| &bound.warnings);
+        print(&(table(&setup.case.title, &levels, warnings, &folder) + &unused_groups(&setup.groups)))?;
     }
     verdict(&setup.name, arguments, &stop, &levels)
 }
@@ -119,13 +120,20 @@ fn study(setup: &Setup) -> AdaptiveStudy {
 /// The study at the last of `levels` known levels that its checkpoint belongs to, and how many levels that are.
 fn resumed(setup: &Setup, folder: &Path, levels: usize) -> Result<(AdaptiveStudy, usize), Failure> {
     let mut study = study(setup);
-    let file = File::open(folder.join(CHECKPOINT));
-    // Without a checkpoint, or with one that is broken or of other levels, the run starts anew.
-    let Ok(Ok(checkpoint)) = file.map(|file| read_checkpoint(BufReader::new(file))) else {
-        return Ok((study, 0));
+    let path = folder.join(CHECKPOINT);
+    let file = match input::open(&path, Input::Arrays, setup.memory) {
+        Ok(file) => file,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok((study, 0)),
+        Err(error) => {
+            let remedy = "remove it, or name another folder with --out";
+            return Err(Failure::Input(format!("{}: {error}; {remedy}", path.display())));
+        }
     };
+    // With a checkpoint that is broken or of other levels, the run starts anew.
+    let Ok(checkpoint) = read_checkpoint(BufReader::new(file)) else { return Ok((study, 0)) };
     let known = checkpoint.marked.len() + 1;
-    let fits = known <= levels && study.resume(checkpoint).map_err(|error| failure(&setup.name, &error))?;
+    let fits = known <= levels
+        && study.resume(checkpoint).map_err(|error| failure(&setup.name, &error, &setup.node_tags))?;
     Ok((study, if fits { known } else { 0 }))
 }
 
@@ -190,19 +198,23 @@ fn percent(relative: Option<f64>) -> String {
 /// The solution on the last mesh as `membranes solve` writes it, that mesh and the errors as pictures.
 fn write_results(
     folder: &Path,
-    case: &CaseFile,
+    setup: &Setup,
     study: &AdaptiveStudy,
     levels: &[AdaptiveLevel],
 ) -> Result<(), Failure> {
-    let (Some((solution, bound)), Some(last)) = (study.solution(), levels.last()) else { return Ok(()) };
+    let case = &setup.case;
+    let (Some((solution, bound)), Some(d), Some(last)) =
+        (study.solution(), study.discretization(), levels.last())
+    else {
+        return Ok(());
+    };
     let failed = |name: &str, error: &dyn std::fmt::Display| Failure::Input(format!("{name}: {error}"));
     let mesh = study.mesh();
-    let d =
-        Discretization::new(study.problem(), mesh.clone()).map_err(|error| failed(&case.title, &error))?;
     let mut results = Results::new(folder);
-    write_solution(&mut results, &case.title, &d, solution, bound)?;
+    write_solution(&mut results, &case.title, d, solution, bound)?;
     let seconds = Seconds { bound: last.bound_seconds, ..Seconds::default() };
-    let summary = Summary::new(&case.title, &d, last.tolerance, Ok(solution), seconds, Some(bound));
+    let summary = Summary::new(&case.title, d, last.tolerance, Ok(solution), seconds, Some(bound))
+        .with_unused_groups(&setup.groups);
 
     let sub = SubTriangulation::new(mesh).map_err(|error| failed(MESH, &error))?;
     let dual = DualMesh::new(mesh, &sub);
@@ -233,7 +245,7 @@ fn values(levels: &[AdaptiveLevel], of: impl Fn(&AdaptiveLevel) -> Option<f64>) 
 }
 
 /// The history for the eye.
-fn table(title: &str, levels: &[AdaptiveLevel], folder: &Path) -> String {
+fn table(title: &str, levels: &[AdaptiveLevel], warnings: &[LoadWarning], folder: &Path) -> String {
     let mut text =
         format!("{title}\n  vertices    h min     bound  relative  effectivity  iterations  seconds\n");
     for level in levels {
@@ -253,6 +265,7 @@ fn table(title: &str, levels: &[AdaptiveLevel], folder: &Path) -> String {
     if let Some(slope) = exponent(later.iter().map(|level| [level.vertices as f64, level.bound])) {
         text += &format!("  the bound falls like vertices^{slope:.2} (later half; -0.50 is the best)\n");
     }
+    warnings.iter().for_each(|warning| text += &format!("  warning: {warning}\n"));
     let files = [SOLUTION, SUMMARY, MEMBRANES, TABLE, PICTURE, MESH].join(", ");
     text + &format!("  files: {}/{{{files}}}\n", folder.display())
 }

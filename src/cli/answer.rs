@@ -1,10 +1,10 @@
 //! An answer to the exported program, from any other solver, before our certificate.
 
-use std::fs::File;
-use std::io::BufReader;
+use std::io::{self, BufReader};
 use std::path::Path;
 
 use super::Failure;
+use super::input::{self, Input};
 use super::setup::{Setup, make_folder, write_file};
 use super::watch::Watch;
 use crate::action::{ContactSolution, Rejected, certify};
@@ -31,8 +31,10 @@ pub(super) fn judge(
     watch: &Watch,
 ) -> Result<Result<ContactSolution, Box<Rejected>>, Failure> {
     let refused = |error: &dyn std::fmt::Display| Failure::Input(format!("{}: {error}", file.display()));
-    let opened = File::open(file)
-        .map_err(|error| refused(&format!("{error}; name a readable file, written by numpy.savez")))?;
+    let opened = input::open(file, Input::Arrays, setup.memory).map_err(|error| match error.kind() {
+        io::ErrorKind::OutOfMemory => refused(&error),
+        _ => refused(&format!("{error}; name a readable file, written by numpy.savez")),
+    })?;
     let n = d.interior().len();
     let answer = read_answer(BufReader::new(opened), 2 * n, n).map_err(|error| refused(&error))?;
     let statistics = Statistics { status: Status::Unknown, ..Statistics::of(NAME) };
@@ -41,7 +43,8 @@ pub(super) fn judge(
     if let Some(folder) = out {
         make_folder(folder, watch, "it is as it was")?;
         let verdict = result.as_ref().map_err(|rejected| rejected.as_ref());
-        let summary = Summary::new(&setup.case.title, d, tolerance, verdict, seconds, None);
+        let summary = Summary::new(&setup.case.title, d, tolerance, verdict, seconds, None)
+            .with_unused_groups(&setup.groups);
         write_file(&folder.join(SUMMARY), |out| summary.write(out))?;
     }
     Ok(result)

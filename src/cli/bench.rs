@@ -9,6 +9,7 @@ use std::sync::Arc;
 use super::Failure;
 use super::args::{BenchArguments, CaseArguments, output_folder};
 use super::case_file::BackendName;
+use super::memory::Memory;
 use super::progress::Progress;
 use super::setup::{Setup, check_refinements, make_folder, solver};
 use super::terminal::{grouped, print};
@@ -62,7 +63,7 @@ impl<'a> Bench<'a> {
     fn new(arguments: &BenchArguments, progress: &'a Progress, watch: &'a Watch) -> Result<Self, Failure> {
         let mut rows = Vec::new();
         for path in &arguments.merge {
-            rows.extend(read_rows(path)?);
+            rows.extend(read_rows(path, Memory::new(None))?);
         }
         let built = || BackendName::ALL.into_iter().filter(|backend| backend.is_built()).collect();
         let mut solvers = Vec::new();

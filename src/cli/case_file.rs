@@ -1,7 +1,6 @@
 //! The case file: problem, mesh and solver from TOML.
 
 use std::collections::BTreeMap;
-use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
@@ -9,6 +8,8 @@ use std::str::FromStr;
 use toml::Value;
 
 use super::Failure;
+use super::input::{self, Input};
+use super::memory::Memory;
 use super::section::{Section, as_number};
 use crate::mesh::{MeshSize, Pattern};
 use crate::problem::{Case, ContactProblem, Domain, ExactSolution, Expression, Function};
@@ -138,14 +139,15 @@ impl CaseFile {
     /// # Errors
     /// One line that names the file, the key and the remedy.
     pub fn read(path: &Path) -> Result<Self, Failure> {
-        Self::parse(&path.display().to_string(), &Self::read_text(path)?, path)
+        let text = Self::read_text(path, Memory::new(None))?;
+        Self::parse(&path.display().to_string(), &text, path)
     }
 
-    /// Reads the text of a case file.
-    pub(super) fn read_text(path: &Path) -> Result<String, Failure> {
+    /// Reads the text of a case file, which takes its place in the memory when it is parsed.
+    pub(super) fn read_text(path: &Path, memory: Memory) -> Result<String, Failure> {
         let read = || {
             let mut text = String::new();
-            File::open(path)?.take(MAX_BYTES + 1).read_to_string(&mut text)?;
+            input::open(path, Input::CaseFile, memory)?.take(MAX_BYTES + 1).read_to_string(&mut text)?;
             if text.len() as u64 > MAX_BYTES { Err(io::ErrorKind::FileTooLarge.into()) } else { Ok(text) }
         };
         read().map_err(|error| Failure::Input(format!("{}: {}", path.display(), unreadable(&error))))
@@ -180,6 +182,7 @@ impl CaseFile {
 
 fn unreadable(error: &io::Error) -> String {
     let remedy = match error.kind() {
+        io::ErrorKind::OutOfMemory => return format!("cannot read the case file: {error}"),
         io::ErrorKind::FileTooLarge => {
             "have a polygon of so many corners meshed by Gmsh, and name the mesh file"
         }

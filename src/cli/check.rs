@@ -3,7 +3,7 @@
 use super::args::CheckArguments;
 use super::case_file::BackendName;
 use super::progress::Progress;
-use super::setup::{Setup, options, solver};
+use super::setup::{Setup, options, solver, unused_groups};
 use super::terminal::{fixed, grouped, print};
 use super::watch::Watch;
 use super::{Failure, SolverSettings, answer};
@@ -60,7 +60,7 @@ pub(super) fn run(arguments: &CheckArguments, watch: &Watch) -> Result<(), Failu
                 .map_err(|error| Failure::Input(format!("{}: {error}", setup.name)))?,
             None => String::new(),
         };
-        print(&(title + &table(&columns) + &fluxes))?;
+        print(&(title + &table(&columns) + &fluxes + &unused_groups(&setup.groups)))?;
     }
     match columns.iter().filter(|column| column.must_certify).find_map(|column| column.result.as_ref().err())
     {

@@ -9,7 +9,7 @@ use super::clock::Clock;
 use super::levels::{GOES_ON, KEPT, Levels, MEMORY, TIME, failure, origin};
 use super::memory::Memory;
 use super::progress::Progress;
-use super::setup::{Setup, make_folder, options, solver, write_file};
+use super::setup::{Setup, make_folder, options, solver, unused_groups, write_file};
 use super::terminal::{grouped, print};
 use super::watch::Watch;
 use crate::pictures::{RatesPicture, Series, render_rates};
@@ -50,7 +50,7 @@ pub(super) fn run(arguments: &ConvergeArguments, watch: &Watch) -> Result<(), Fa
     let settings = &setup.case.solver;
     let solver = solver(backend);
     let mut study = ConvergenceStudy::new(exact, setup.family, solver, options(settings), settings.tolerance)
-        .map_err(|error| failure(&setup.name, &error))?;
+        .map_err(|error| failure(&setup.name, &error, &setup.node_tags))?;
     clock.watch(watch, &setup.name);
     let limits = Limits {
         levels: arguments.levels,
@@ -64,7 +64,7 @@ pub(super) fn run(arguments: &ConvergeArguments, watch: &Watch) -> Result<(), Fa
     write_picture(&folder, &setup.case.title, &levels)?;
     drop(progress);
     if !arguments.case.quiet {
-        print(&table(&setup.case.title, &levels, &folder))?;
+        print(&(table(&setup.case.title, &levels, &folder) + &unused_groups(&setup.groups)))?;
     }
     stop.map_or(Ok(()), |why| {
         let (done, of) = (levels.len(), arguments.levels);
@@ -125,7 +125,7 @@ fn add_levels(
         };
         match solved {
             Err(error) if limits.clock.has_stopped(&error) => return Ok(Some(TIME)),
-            solved => solved.map_err(|error| failure(name, &error))?,
+            solved => solved.map_err(|error| failure(name, &error, &[]))?,
         }
         if level >= known {
             kept.write(levels)?;

@@ -3,7 +3,7 @@
 use super::Failure;
 use super::args::{ExportArguments, Format};
 use super::progress::Progress;
-use super::setup::{Setup, make_folder, write_file};
+use super::setup::{Setup, make_folder, unused_groups, write_file};
 use super::terminal::print;
 use super::watch::Watch;
 use crate::qp::{QpPart, contact_qp, write_matrix_market, write_npz, write_qps};
@@ -34,7 +34,7 @@ pub(super) fn run(arguments: &ExportArguments, watch: &Watch) -> Result<(), Fail
     }
     drop(progress);
     if !arguments.case.quiet {
-        print(&(written.join("\n") + "\n"))?;
+        print(&(written.join("\n") + "\n" + &unused_groups(&setup.groups)))?;
     }
     Ok(())
 }

@@ -9,6 +9,8 @@ use super::Failure;
 use super::args::CaseArguments;
 use super::case_file::BackendName;
 use super::setup::write_file;
+use crate::formats::{open_regular, read_regular};
+use crate::mesh::gmsh_nodes;
 use crate::output::remove;
 use crate::study::StudyError;
 
@@ -46,11 +48,11 @@ impl Levels<'_> {
     /// The rows that an earlier run of the same origin has left; none when it was another one.
     pub(super) fn so_far<T: DeserializeOwned>(&self, origin: &str) -> Result<Vec<T>, Failure> {
         let table = self.folder.join(self.table);
-        let known = std::fs::read_to_string(self.folder.join(self.origin));
-        if known.is_ok_and(|text| text == origin)
-            && let Ok(mut reader) = csv::Reader::from_path(&table)
+        let known = read_regular(&self.folder.join(self.origin), origin.len() as u64);
+        if known.is_ok_and(|text| text == origin.as_bytes())
+            && let Ok(file) = open_regular(&table)
         {
-            let rows: Result<Vec<T>, _> = reader.deserialize().collect();
+            let rows: Result<Vec<T>, _> = csv::Reader::from_reader(file).into_deserialize().collect();
             // A table that is not ours, or of another version, is made anew.
             return Ok(rows.unwrap_or_default());
         }
@@ -78,8 +80,14 @@ pub(super) fn origin(case: &CaseArguments, backend: BackendName, text: &str) -> 
 }
 
 /// Why a study of the case file `name` fails.
-pub(super) fn failure(name: &str, error: &StudyError) -> Failure {
-    let text = format!("{name}: {error}");
+/// `node_tags` are Gmsh's numbers of the vertices.
+pub(super) fn failure(name: &str, error: &StudyError, node_tags: &[u64]) -> Failure {
+    let vertices = match error {
+        StudyError::Discretization(error) => error.vertex().into_iter().collect(),
+        StudyError::Mesh(error) => error.vertices(),
+        _ => Vec::new(),
+    };
+    let text = format!("{name}: {error}{}", gmsh_nodes(&vertices, node_tags));
     match error {
         StudyError::Rejected { .. } | StudyError::Solver(_) | StudyError::Measure(_) => {
             Failure::NotCertified(text)

@@ -32,6 +32,11 @@ impl Memory {
         needed(backend, vertices) <= self.0
     }
 
+    /// Whether there are so many bytes; if not, the GiB that are needed and that there are.
+    pub(super) fn check_bytes(self, needed: f64) -> Result<(), [f64; 2]> {
+        if needed <= self.0 { Ok(()) } else { Err([needed, self.0].map(|bytes| bytes / GIB)) }
+    }
+
     /// Refuses a run on so many vertices that has not enough.
     pub(super) fn check(self, name: &str, backend: BackendName, vertices: f64) -> Result<(), Failure> {
         if self.suffices(backend, vertices) {

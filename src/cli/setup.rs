@@ -1,20 +1,24 @@
 //! From a case file to a mesh, a discrete problem, and a solver.
 
+use std::io::{self, Read};
 use std::path::Path;
 use std::time::Instant;
 
 use super::args::CaseArguments;
 use super::case_file::{BackendName, CaseFile, MeshSource};
+use super::input::{self, Input};
 use super::memory::Memory;
 use super::progress::Progress;
 use super::terminal::grouped;
 use super::watch::Watch;
 use super::{Failure, SolverSettings};
 use crate::discretization::Discretization;
-use crate::mesh::{MAX_VERTICES, Mesh, MeshFamily, ReadError, estimated_vertices, generate};
+use crate::formats::gmsh::{PhysicalGroup, parse};
+use crate::mesh::{GmshMesh, MAX_VERTICES, MeshFamily, ReadError, estimated_vertices, generate, gmsh_nodes};
 use crate::output::{FileSet, Seconds, WriteSeek, prepare_folder, write_atomically};
 use crate::qp::Clarabel;
 use crate::solver::{ActiveSet, Auto, ContactSolver, Multigrid, QpSolver, SolverOptions};
+use crate::text::excerpt;
 
 /// The case and its meshes.
 pub(super) struct Setup {
@@ -23,6 +27,10 @@ pub(super) struct Setup {
     pub(super) text: String,
     pub(super) case: CaseFile,
     pub(super) family: MeshFamily,
+    /// Gmsh's numbers of the vertices of the coarse mesh; none of a mesh that was generated.
+    pub(super) node_tags: Vec<u64>,
+    /// The physical groups of the mesh file.
+    pub(super) groups: Vec<PhysicalGroup>,
     pub(super) seconds: Seconds,
     pub(super) memory: Memory,
 }
@@ -31,14 +39,15 @@ impl Setup {
     /// Reads the case file and makes its mesh.
     pub(super) fn new(arguments: &CaseArguments, progress: &Progress) -> Result<Self, Failure> {
         let name = arguments.path.display().to_string();
-        let text = CaseFile::read_text(&arguments.path)?;
+        let memory = Memory::new(arguments.memory_limit);
+        let text = CaseFile::read_text(&arguments.path, memory)?;
         let case = CaseFile::parse(&name, &text, &arguments.path)?;
         progress.stage("making the mesh");
         let start = Instant::now();
-        let memory = Memory::new(arguments.memory_limit);
-        let family = make_mesh(&name, &case, arguments.refine as usize, memory)?;
+        let Meshes { family, node_tags, groups } =
+            make_mesh(&name, &case, arguments.refine as usize, memory)?;
         let seconds = Seconds { mesh: start.elapsed().as_secs_f64(), ..Seconds::default() };
-        Ok(Self { name, text, case, family, seconds, memory })
+        Ok(Self { name, text, case, family, node_tags, groups, seconds, memory })
     }
 
     /// Refuses a solver that needs more memory on this mesh than there is.
@@ -50,14 +59,56 @@ impl Setup {
     pub(super) fn discretize(&self, progress: &Progress) -> Result<(Discretization, Seconds), Failure> {
         progress.stage(format!("assembling on {} vertices", grouped(self.family.mesh().points().len())));
         let start = Instant::now();
-        let d = Discretization::new(&self.case.problem, self.family.mesh().clone())
-            .map_err(|error| Failure::Input(format!("{}: {error}", self.name)))?;
+        let d = Discretization::new(&self.case.problem, self.family.mesh().clone()).map_err(|error| {
+            let vertices: Vec<usize> = error.vertex().into_iter().collect();
+            Failure::Input(format!("{}: {error}{}", self.name, gmsh_nodes(&vertices, &self.node_tags)))
+        })?;
         Ok((d, Seconds { assembly: start.elapsed().as_secs_f64(), ..self.seconds }))
     }
 }
 
+/// The groups that a run does not use, in one line for the terminal; nothing where there are none.
+pub(super) fn unused_groups(groups: &[PhysicalGroup]) -> String {
+    /// More names are no line.
+    const MOST: usize = 6;
+    if groups.is_empty() {
+        return String::new();
+    }
+    let names: Vec<String> = groups.iter().take(MOST).map(|group| excerpt(&group.to_string())).collect();
+    let more = if groups.len() > MOST { format!(" and {} more", groups.len() - MOST) } else { String::new() };
+    format!("  physical groups of the mesh that are not used: {}{more}\n", names.join(", "))
+}
+
+/// The meshes of a case, and what its mesh file calls their parts.
+struct Meshes {
+    family: MeshFamily,
+    node_tags: Vec<u64>,
+    groups: Vec<PhysicalGroup>,
+}
+
+/// Reads a mesh within the memory that there is.
+fn read_mesh(
+    name: &str,
+    path: &Path,
+    memory: Memory,
+    check: impl Fn(f64) -> Result<(), Failure>,
+) -> Result<GmshMesh, Failure> {
+    let refused = |error: ReadError| cannot_read(name, path, &error);
+    let read = || {
+        let mut bytes = Vec::new();
+        let file = input::open(path, Input::Mesh, memory)?;
+        // A file that grows is not followed.
+        let length = file.metadata()?.len();
+        file.take(length).read_to_end(&mut bytes)?;
+        Ok(parse(&bytes)?)
+    };
+    let triangulation = read().map_err(refused)?;
+    check(triangulation.points.len() as f64)?;
+    GmshMesh::new(triangulation).map_err(refused)
+}
+
 /// The coarse mesh of the case and its refinements.
-fn make_mesh(name: &str, case: &CaseFile, further: usize, memory: Memory) -> Result<MeshFamily, Failure> {
+fn make_mesh(name: &str, case: &CaseFile, further: usize, memory: Memory) -> Result<Meshes, Failure> {
     let bad_mesh =
         |error: &dyn std::fmt::Display| Failure::Input(format!("{name}: [mesh], [domain]: {error}"));
     let refinements = case.refine.saturating_add(further);
@@ -66,9 +117,12 @@ fn make_mesh(name: &str, case: &CaseFile, further: usize, memory: Memory) -> Res
         let finest = check_refinements(name, vertices, refinements)?;
         memory.check(name, BackendName::Multigrid, finest)
     };
+    let (mut node_tags, mut groups) = (Vec::new(), Vec::new());
     let mut family = match &case.mesh {
         MeshSource::File(path) => {
-            MeshFamily::polygonal(Mesh::read_gmsh(path).map_err(|error| cannot_read(name, path, &error))?)
+            let read = read_mesh(name, path, memory, &check)?;
+            (node_tags, groups) = (read.node_tags, read.groups);
+            MeshFamily::polygonal(read.mesh)
         }
         MeshSource::Generator { domain, size, grading } => {
             let vertices = estimated_vertices(domain, *size);
@@ -87,9 +141,11 @@ fn make_mesh(name: &str, case: &CaseFile, further: usize, memory: Memory) -> Res
     };
     check(family.mesh().points().len() as f64)?;
     for _ in 0..refinements {
-        family.refine().map_err(|error| bad_mesh(&error))?;
+        family
+            .refine()
+            .map_err(|error| bad_mesh(&format!("{error}{}", gmsh_nodes(&error.vertices(), &node_tags))))?;
     }
-    Ok(family)
+    Ok(Meshes { family, node_tags, groups })
 }
 
 /// The vertices after so many refinements; refuses such that lead beyond what can be stored.
@@ -107,6 +163,8 @@ pub(super) fn check_refinements(name: &str, vertices: f64, refinements: usize) -
 fn cannot_read(case: &str, mesh: &Path, error: &ReadError) -> Failure {
     let mesh = mesh.display();
     Failure::Input(match error {
+        // It says what to do.
+        ReadError::Io(error) if error.kind() == io::ErrorKind::OutOfMemory => format!("{mesh}: {error}"),
         ReadError::Io(_) => {
             format!("{case}: `domain.mesh`: {mesh}: {error}; name a file, relative to the case file")
         }

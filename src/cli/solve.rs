@@ -7,7 +7,7 @@ use super::Failure;
 use super::args::SolveArguments;
 use super::case_file::CaseFile;
 use super::progress::Progress;
-use super::setup::{Results, Setup, make_folder, options, solver};
+use super::setup::{Results, Setup, make_folder, options, solver, unused_groups};
 use super::terminal::{fields, fixed, grouped, print};
 use super::watch::Watch;
 use crate::action::{ContactSolution, Rejected};
@@ -68,17 +68,20 @@ pub(super) fn run(arguments: &SolveArguments, watch: &Watch) -> Result<(), Failu
             }
             let output = start.elapsed().as_secs_f64();
             let seconds = Seconds { bound: bound_seconds, output, ..seconds };
-            let summary = Summary::new(title, &d, tolerance, Ok(&solution), seconds, Some(&bound));
+            let summary = Summary::new(title, &d, tolerance, Ok(&solution), seconds, Some(&bound))
+                .with_unused_groups(&setup.groups);
             results.write(SUMMARY, |out| summary.write(out))?;
             results.publish()?;
             drop(progress);
             if !arguments.case.quiet {
-                print(&table(&summary, solution.statistics().polish, &folder, arguments.dual))?;
+                let table = table(&summary, solution.statistics().polish, &folder, arguments.dual);
+                print(&(table + &unused_groups(&setup.groups)))?;
             }
             Ok(())
         }
         Err(AccuracyError::Rejected(rejected, tolerance)) => {
-            let summary = Summary::new(title, &d, tolerance, Err(&rejected), seconds, None);
+            let summary = Summary::new(title, &d, tolerance, Err(&rejected), seconds, None)
+                .with_unused_groups(&setup.groups);
             Err(reject(&setup.name, &folder, &summary, &rejected))
         }
         Err(error) => Err(Failure::NotCertified(format!("{}: {error}", setup.name))),
@@ -100,7 +103,8 @@ fn too_late(
     };
     let rejected = Rejected::without_result(statistics);
     let tolerance = settings.tolerance.or_default();
-    let summary = Summary::new(&setup.case.title, d, tolerance, Err(&rejected), seconds, None);
+    let summary = Summary::new(&setup.case.title, d, tolerance, Err(&rejected), seconds, None)
+        .with_unused_groups(&setup.groups);
     let (name, folder) = (setup.name.clone(), folder.to_path_buf());
     move || reject(&name, &folder, &summary, &rejected)
 }
@@ -210,6 +214,7 @@ fn table(summary: &Summary, polish: Option<PolishReport>, folder: &Path, dual: b
             ),
         ),
         ("error", error_line(summary)),
+        ("warning", summary.warnings.join("; ")),
         ("energy", number(summary.energy)),
         (
             "contact",
@@ -217,10 +222,10 @@ fn table(summary: &Summary, polish: Option<PolishReport>, folder: &Path, dual: b
                 "{} of {} interior vertices, area {}",
                 grouped(contact),
                 grouped(interior),
-                fixed(summary.contact_area.unwrap_or(0.0), 6)
+                fixed(summary.contact_area_extended.unwrap_or(0.0), 6)
             ),
         ),
-        ("total force", number(summary.total_force)),
+        ("total force", number(summary.total_force_extended)),
         (
             "seconds",
             format!(
@@ -256,7 +261,10 @@ fn solver_line(summary: &Summary) -> String {
 fn error_line(summary: &Summary) -> String {
     let Some(bound) = summary.error_bound else { return String::new() };
     let relative = match summary.relative_error_bound {
-        Some(relative) => format!("{:.2} %, guaranteed", 100.0 * relative),
+        Some(relative) if summary.warnings.is_empty() => {
+            format!("{:.2} %, guaranteed up to the quadrature of the loads", 100.0 * relative)
+        }
+        Some(relative) => format!("{:.2} %, if the loads are as the quadrature sees them", 100.0 * relative),
         None => "over half of it: refine".into(),
     };
     format!("at most {bound:.3e} in the energy norm ({relative})")

@@ -1,6 +1,6 @@
 //! The norm of `H^-1` by a Riesz lift.
 
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 use super::MeasureError;
 use super::spaces::Spaces;
@@ -48,7 +48,7 @@ pub(super) fn dual_norm(
     refinements: usize,
     rho: impl Fn(usize, [f64; 2]) -> f64 + Sync,
 ) -> Result<DualNorm, MeasureError> {
-    let (spaces, mesh) = Spaces::new(d, sub, refinements);
+    let (spaces, mesh) = Spaces::new(d, sub, refinements)?;
     let parts = mesh.triangles().len() / sub.mesh().triangles().len();
     let [deep, change] = functionals(&mesh, rule, |t, point| rho(t / parts, point));
     let [deep, change] = [deep, change].map(|functional| spaces.functional(&functional));

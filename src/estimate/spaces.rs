@@ -14,12 +14,16 @@ pub(super) struct Spaces {
 
 impl Spaces {
     /// Returns the spaces and the finest mesh, `S_h` refined `refinements` times.
-    pub(super) fn new(d: &Discretization, sub: &SubTriangulation, refinements: usize) -> (Self, Mesh) {
+    pub(super) fn new(
+        d: &Discretization,
+        sub: &SubTriangulation,
+        refinements: usize,
+    ) -> Result<(Self, Mesh), MeasureError> {
         let mut means = Vec::new();
         let mut finest = sub.mesh().clone();
         for _ in 0..refinements {
             let coarse = finest.points().len();
-            let Refinement { mesh, parents } = finest.refine();
+            let Refinement { mesh, parents } = finest.refine()?;
             means.push((coarse, parents.into_iter().map(|[a, b]| Mean::of_two(a, b)).collect::<Vec<_>>()));
             finest = mesh;
         }
@@ -30,7 +34,7 @@ impl Spaces {
         genealogy.refines(d.mesh().points().len(), &means_of_sub_triangulation(d.mesh(), sub));
         genealogy.follow(d.mesh().ancestry());
         let hierarchy = Hierarchy::over(&stiffness(&finest), finest.kind(), &genealogy);
-        (Self { hierarchy }, finest)
+        Ok((Self { hierarchy }, finest))
     }
 
     /// A functional on the finest space, given over the vertices of its mesh by its values at the hat functions.

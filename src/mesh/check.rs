@@ -4,29 +4,23 @@ mod boundary;
 mod boxes;
 mod pieces;
 mod quality;
+mod size;
 #[cfg(test)]
 mod tests;
+mod winding;
 
 use thiserror::Error;
 
-use super::{Mesh, Refinement, VertexKind};
-use crate::geometry::{distance_sq, twice_signed_area};
+use super::{Mesh, VertexKind};
 use crate::mesh::topology::{HalfEdge, HalfEdges};
 use crate::text::Number;
-pub(super) use boundary::resolution;
 pub use quality::MeshQuality;
 
 use boundary::{Boundary, BoundaryEdge};
 use pieces::check_pieces;
 pub(in crate::mesh) use quality::angles;
-
-/// A triangle whose doubled area is below this fraction of its longest edge squared is degenerate. Rounding of the
-/// coordinates moves that fraction by about 1e-16; a sliver of 0.01 degrees has 1.7e-4.
-const MIN_RELATIVE_AREA: f64 = 1e-12;
-
-/// Coordinates beyond this are refused, and triangles below its inverse: products of areas, loads and
-/// displacements must not overflow.
-const MAX_COORDINATE: f64 = 1e40;
+pub(in crate::mesh) use size::Smallest;
+use size::{MAX_COORDINATE, Sense, sense};
 
 /// What rounding may add to a full turn, radians.
 const TURN_ROUNDING: f64 = 1e-9;
@@ -143,9 +137,9 @@ pub enum MeshError {
         /// A triangle at the second.
         triangle: usize,
     },
-    /// A triangle cannot be divided any more.
+    /// A triangle cannot be divided or made smaller any more.
     #[error(
-        "triangle {triangle} (vertices {}, {}, {}) cannot be divided: the size of the mesh or of its coordinates leaves too few digits for its parts; refine less often there", corners[0], corners[1], corners[2]
+        "triangle {triangle} (vertices {}, {}, {}) cannot be divided or made smaller: the size of the mesh or of its coordinates leaves too few digits; refine less often there, or grade less", corners[0], corners[1], corners[2]
     )]
     TooSmall {
         /// The triangle.
@@ -165,6 +159,46 @@ pub enum MeshError {
 }
 
 impl MeshError {
+    /// The vertices that the error names, each once, in the order in which they come.
+    pub fn vertices(&self) -> Vec<usize> {
+        let mut named = match *self {
+            Self::Coordinates { vertex, .. }
+            | Self::NoSuchVertex { vertex, .. }
+            | Self::OverlapAtVertex { vertex, .. } => vec![vertex],
+            Self::HangingVertex { vertex, edge: [a, b], .. } => vec![vertex, a, b],
+            Self::CoincidentVertices { first, second, .. } => vec![first, second],
+            Self::Overlap { edge, .. } => edge.to_vec(),
+            Self::Degenerate { corners, .. }
+            | Self::Duplicate { corners, .. }
+            | Self::TooSmall { corners, .. } => corners.to_vec(),
+            Self::Empty
+            | Self::Tiny { .. }
+            | Self::Crossing { .. }
+            | Self::Nested { .. }
+            | Self::NotGraded { .. } => vec![],
+        };
+        let mut seen = Vec::new();
+        named.retain(|a| {
+            !seen.contains(a) && {
+                seen.push(*a);
+                true
+            }
+        });
+        named
+    }
+
+    /// The triangles that the error names.
+    pub fn triangles(&self) -> Vec<usize> {
+        let second = match *self {
+            Self::Duplicate { second, .. } | Self::Overlap { second, .. } | Self::Crossing { second, .. } => {
+                Some(second)
+            }
+            Self::Nested { outer, .. } => Some(outer),
+            _ => None,
+        };
+        self.triangle().into_iter().chain(second).collect()
+    }
+
     /// The (first) triangle that the error names.
     pub fn triangle(&self) -> Option<usize> {
         match *self {
@@ -215,22 +249,6 @@ impl Mesh {
     }
 }
 
-impl Mesh {
-    /// Divides every triangle into four, unless rounding leaves a part no area.
-    ///
-    /// # Errors
-    /// [`MeshError::TooSmall`], naming the triangle.
-    pub(super) fn refine_checked(&self) -> Result<Refinement, MeshError> {
-        let refinement = self.refine();
-        let fine = &refinement.mesh;
-        let has_area = |&t: &usize| sense(fine.corners(t)) == Sense::Counterclockwise;
-        match (0..fine.triangles.len()).find(|t| !has_area(t)).map(|part| part / 4) {
-            Some(triangle) => Err(MeshError::TooSmall { triangle, corners: self.triangles[triangle] }),
-            None => Ok(refinement),
-        }
-    }
-}
-
 fn check_points(points: &[[f64; 2]]) -> Result<(), MeshError> {
     match points.iter().position(|point| !point.iter().all(|x| x.abs() < MAX_COORDINATE)) {
         Some(vertex) => Err(MeshError::Coordinates { vertex, point: points[vertex] }),
@@ -255,31 +273,6 @@ fn orient(points: &[[f64; 2]], triangles: &mut [[usize; 3]]) -> Result<(), MeshE
         }
     }
     Ok(())
-}
-
-/// How the corners of a triangle run around it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Sense {
-    Counterclockwise,
-    Clockwise,
-    /// It has no area that rounding leaves.
-    Degenerate,
-    /// Its longest edge is too short.
-    Tiny,
-}
-
-pub(super) fn sense([a, b, c]: [[f64; 2]; 3]) -> Sense {
-    let longest_sq = distance_sq(a, b).max(distance_sq(b, c)).max(distance_sq(c, a));
-    let area = twice_signed_area([a, b, c]);
-    if a != b && b != c && c != a && longest_sq * MAX_COORDINATE * MAX_COORDINATE <= 1.0 {
-        Sense::Tiny
-    } else if !(area.abs() > MIN_RELATIVE_AREA * longest_sq) {
-        Sense::Degenerate
-    } else if area > 0.0 {
-        Sense::Counterclockwise
-    } else {
-        Sense::Clockwise
-    }
 }
 
 /// The edges with one triangle; those with two must have one on each side.

@@ -108,11 +108,18 @@ pub enum GenerateError {
         "rounding makes vertices coincide or lie on one line: scale the domain to a moderate size, move it nearer to the origin, or remove details of that size"
     )]
     Rounding,
-    /// Refinement did not end.
+    /// The refinement takes many more vertices than expected.
     #[error(
-        "the refinement does not end: the polygon has features much smaller than `size`; lower `min_angle` or `size`"
+        "triangles with angles of {min_angle} degrees take more than {vertices} vertices here, where `size` alone asks for about {expected}: the polygon has parts much narrower than `size`; give `min_angle = 0`, or a `size` as small as they are"
     )]
-    Incomplete,
+    TooNarrow {
+        /// The least angle that was asked for, degrees.
+        min_angle: f64,
+        /// Vertices at which it was stopped.
+        vertices: usize,
+        /// Vertices that triangles of the size asked for need.
+        expected: usize,
+    },
 }
 
 /// Makes a mesh of `domain`. An unstructured disk, like a structured one, is an inscribed polygon.

@@ -21,11 +21,11 @@ pub(crate) use matrix::{Pattern, Values};
 pub(crate) use runs::{LONGEST, Runs};
 pub(crate) use transfer::Transfer;
 
-use rayon::prelude::*;
 use sprs::CsMat;
 
 use crate::discretization::Discretization;
 use crate::mesh::VertexKind;
+use crate::parallel::prelude::*;
 use coarsening::coarsened;
 use galerkin::galerkin;
 use matrix::{BLOCK, compact_stiffness, reordered};

@@ -28,7 +28,7 @@ pub enum Domain {
     },
     /// A polygon with polygonal holes.
     Polygon {
-        /// The outer boundary, in either orientation, first vertex not repeated.
+        /// The outer boundary, in either orientation; the last vertex may repeat the first.
         vertices: Vec<[f64; 2]>,
         /// The boundaries of the holes, likewise.
         holes: Vec<Vec<[f64; 2]>>,

@@ -1,6 +1,5 @@
 //! What a QP solver is to this crate.
 
-use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::QpProblem;
@@ -57,7 +56,8 @@ pub struct QpSolution {
 }
 
 /// Why a solver stopped, in its own view. Whether the result is accepted is decided by residuals.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub enum Status {
     /// It reached the tolerance.
     Solved,

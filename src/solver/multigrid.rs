@@ -97,10 +97,11 @@ fn solve_on(
     let [gap, sum] = halves(hierarchy, &decoupled, d, options);
     let limits =
         Limits { cycles: options.max_iterations.unwrap_or(MAX_CYCLES), deadline: options.deadline(start) };
-    let (gap, sum) = rayon::join(|| solve(hierarchy, gap, &limits), || solve(hierarchy, sum, &limits));
+    let (gap, sum) =
+        crate::parallel::join(|| solve(hierarchy, gap, &limits), || solve(hierarchy, sum, &limits));
     let (gap, sum) = (gap?, sum?);
     let level_iterations: Vec<usize> = gap.cycles.iter().zip(&sum.cycles).map(|(a, b)| *a.max(b)).collect();
-    let (w, (s, y)) = rayon::join(
+    let (w, (s, y)) = crate::parallel::join(
         || hierarchy.to_vertices(&gap.x),
         || (hierarchy.to_vertices(&sum.x), hierarchy.to_vertices(&gap.y)),
     );

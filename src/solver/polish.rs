@@ -6,8 +6,6 @@
 
 use std::time::Instant;
 
-use serde::{Deserialize, Serialize};
-
 use super::Candidate;
 use super::active_set::{Limits, guess, settle};
 use super::qp_solver::unknowns;
@@ -19,7 +17,8 @@ use crate::qp::{KktResiduals, QpProblem, Status};
 const MAX_STEPS: usize = 100;
 
 /// What the polish did.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub struct PolishReport {
     /// Whether the polished result replaced the solver's.
     pub kept: bool,

@@ -157,7 +157,7 @@ fn blank(name: &str, place: &Place) -> Row {
         vertices: place.discretization.mesh().points().len(),
         solver: name.into(),
         origin: ORIGIN.into(),
-        threads: Some(rayon::current_num_threads()),
+        threads: Some(crate::parallel::current_num_threads()),
         ..Row::default()
     }
 }

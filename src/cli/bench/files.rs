@@ -3,6 +3,8 @@
 use std::path::Path;
 
 use crate::cli::Failure;
+use crate::cli::input::{self, Input};
+use crate::cli::memory::Memory;
 use crate::cli::setup::write_file;
 use crate::pictures::{Times, TimesPicture, render_times};
 use crate::study::comparison::{Curve, ORIGIN, Row, curves, markdown};
@@ -18,13 +20,15 @@ const SLOPES: [f64; 2] = [1.0, 1.5];
 const MAX_ROWS: usize = 5000;
 
 /// Rows of a file in the form of `bench.csv`.
-pub(super) fn read_rows(path: &Path) -> Result<Vec<Row>, Failure> {
+pub(super) fn read_rows(path: &Path, memory: Memory) -> Result<Vec<Row>, Failure> {
     let bad_input = |error: csv::Error| {
         let error = error.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
         let remedy = format!("give a CSV file with the columns of {ROWS}");
         Failure::Input(format!("{}: {error}; {remedy}", path.display()))
     };
-    let mut reader = csv::Reader::from_path(path).map_err(bad_input)?;
+    let mut reader = csv::Reader::from_reader(
+        input::open(path, Input::Rows, memory).map_err(|error| bad_input(error.into()))?,
+    );
     let rows: Vec<Row> =
         reader.deserialize().take(MAX_ROWS + 1).collect::<Result<_, _>>().map_err(bad_input)?;
     if rows.len() > MAX_ROWS {
@@ -90,7 +94,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let read = |rows: usize| {
             write_rows(folder.path(), &vec![Row::default(); rows]).unwrap();
-            read_rows(&folder.path().join(ROWS))
+            read_rows(&folder.path().join(ROWS), Memory::new(None))
         };
         assert_eq!(read(MAX_ROWS).map(|rows| rows.len()), Ok(MAX_ROWS));
         let message = read(MAX_ROWS + 1).unwrap_err().to_string();

@@ -70,7 +70,7 @@ fn the_iteration_agrees_with_a_direct_solve() {
     for mesh in [square(1), square(2), irregular(5), l_shape(1.0, 3, Default::default()).unwrap()] {
         let norm = norm_on(&mesh, 1, rho);
         let sub = SubTriangulation::new(&mesh).unwrap();
-        let fine = sub.mesh().refine().mesh;
+        let fine = sub.mesh().refine().unwrap().mesh;
         for (mesh, figure) in [(sub.mesh(), norm.coarser), (&fine, norm.value)] {
             let free: Vec<usize> =
                 (0..mesh.points().len()).filter(|&a| mesh.kind()[a] == VertexKind::Interior).collect();
@@ -91,7 +91,7 @@ fn functionals_are_restricted_to_what_they_are_on_the_coarse_mesh() {
     let mesh = irregular(4);
     let d = Discretization::new(&at_rest(), mesh.clone()).unwrap();
     let sub = SubTriangulation::new(&mesh).unwrap();
-    let (spaces, finest) = Spaces::new(&d, &sub, 1);
+    let (spaces, finest) = Spaces::new(&d, &sub, 1).unwrap();
     let [fine, change] = functionals(&finest, &plain(), rho);
     let on_sub = spaces.restrict(&spaces.functional(&fine));
     let on_mesh = spaces.restrict(&on_sub);
@@ -143,7 +143,7 @@ fn figures(
     rule: &CutRule,
     rho: impl Fn(usize, [f64; 2]) -> f64 + Sync,
 ) -> [f64; 3] {
-    let (spaces, mesh) = Spaces::new(d, sub, 1);
+    let (spaces, mesh) = Spaces::new(d, sub, 1).unwrap();
     let [fine, _] = functionals(&mesh, rule, |t, point| rho(t / 4, point));
     let fine = spaces.functional(&fine);
     let on_sub = spaces.restrict(&fine);

@@ -1,6 +1,7 @@
 use proptest::prelude::*;
 
 use super::*;
+use crate::geometry::twice_signed_area;
 use crate::mesh::samples::{Random, irregular, renumbered, square, square_without};
 
 mod hanging;

@@ -115,7 +115,7 @@ mod tests {
         let [coarse, fine] = [3, 6].map(|rings| disk([0.0, 0.0], 1.0, rings).unwrap());
         let parents = fine.ancestry().last().unwrap();
         assert_eq!((fine.ancestry().len(), parents.coarse_vertices()), (1, coarse.points().len()));
-        let refined = coarse.refine();
+        let refined = coarse.refine().unwrap();
         let mut expected: Vec<[u32; 2]> = refined.mesh.ancestry()[0].ends().to_vec();
         let mut found: Vec<[u32; 2]> = parents.ends().iter().map(|&[a, b]| [a.min(b), a.max(b)]).collect();
         expected.sort_unstable();
@@ -127,7 +127,7 @@ mod tests {
     #[test]
     fn refinements_add_to_the_ancestry() {
         let coarse = irregular(3);
-        let fine = coarse.refine().mesh.refine().mesh;
+        let fine = coarse.refine().unwrap().mesh.refine().unwrap().mesh;
         assert_eq!(fine.ancestry().len(), 2);
         assert!(ancestry_defect(&fine, coarse.points()) < ROUNDING);
     }

@@ -126,7 +126,9 @@ fn one_vertex_in_contact_couples_two_rows_of_a_colour() {
 #[test]
 fn no_part_of_a_cycle_raises_the_energy() {
     let mut random = Random::new(11);
-    for (mesh, one_in) in [(square(32), 3), (square(32), 20), (irregular(5).refine().mesh.refine().mesh, 8)] {
+    for (mesh, one_in) in
+        [(square(32), 3), (square(32), 20), (irregular(5).refine().unwrap().mesh.refine().unwrap().mesh, 8)]
+    {
         let hierarchy = hierarchy_of(mesh);
         let (finest, top) = (hierarchy.finest(), hierarchy.finest() - 1);
         let (_, frozen) = truncated(&hierarchy, &mut random, one_in);
@@ -174,7 +176,7 @@ fn bisected(steps: usize) -> Mesh {
 
 #[test]
 fn a_cycle_costs_a_few_times_the_finest_level() {
-    for mesh in [square(64), bisected(20), irregular(40), bisected(6).refine().mesh] {
+    for mesh in [square(64), bisected(20), irregular(40), bisected(6).refine().unwrap().mesh] {
         let hierarchy = hierarchy_of(mesh);
         let finest = hierarchy.finest();
         let rows = |l: usize| hierarchy.levels()[l].pattern.rows() as f64;

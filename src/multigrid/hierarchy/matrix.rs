@@ -1,12 +1,12 @@
 //! Symmetric matrices in compact rows.
 
-use rayon::prelude::*;
 use sprs::CsMat;
 
 use super::galerkin::RowSum;
 use super::inverse;
 use super::runs::{LONGEST, Runs};
 use crate::mesh::VertexKind;
+use crate::parallel::prelude::*;
 
 /// Rows that are made together.
 pub(crate) const BLOCK: usize = 8192;
@@ -181,7 +181,7 @@ pub(crate) fn assemble(blocks: Vec<Rows>) -> (Pattern, Values) {
     let mut off_diagonal = &mut values.off_diagonal[..];
     let (mut diagonal, mut inverse) = (&mut values.diagonal[..], &mut values.inverse[..]);
     let mut offset = 0;
-    rayon::scope(|scope| {
+    crate::parallel::scope(|scope| {
         for block in blocks {
             let (rows, entries) = (block.ends.len(), block.column.len());
             let start = split_off(&mut start, rows);

@@ -1,9 +1,9 @@
 //! Numberings in which neighbours are near: a smoother that runs through the memory once needs them.
 
-use rayon::prelude::*;
 use sprs::CsMat;
 
 use super::genealogy::{Genealogy, NONE};
+use crate::parallel::prelude::*;
 
 /// A numbering is left as it is when no neighbours are further apart than this many times the side of a square mesh.
 const NEAR: f64 = 4.0;

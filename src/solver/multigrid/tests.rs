@@ -46,7 +46,7 @@ fn meshes() -> Vec<Mesh> {
         l_shape(1.0, 16, Pattern::Right).unwrap(),
         l_shape(1.0, 16, Pattern::Right).unwrap().graded([0.0, 0.0], 2.0).unwrap(),
         generate(&unit, MeshSize::EdgeLength { size: 0.04, min_angle: 25.0 }).unwrap(),
-        irregular(6).refine().mesh.refine().mesh,
+        irregular(6).refine().unwrap().mesh.refine().unwrap().mesh,
     ]
 }
 
@@ -292,7 +292,7 @@ fn truncated_matrices_follow_every_change_of_the_contact_set() {
     const ROUNDING: f64 = 1e-12;
     let problem = problem([1.0, 1.0], 0.05);
     let square = rectangle([0.0, 0.0], [1.0, 1.0], [16; 2], Pattern::Right).unwrap();
-    for mesh in [square, irregular(4).refine().mesh, irregular(13)] {
+    for mesh in [square, irregular(4).refine().unwrap().mesh, irregular(13)] {
         let d = Discretization::new(&problem, mesh.clone()).unwrap();
         let hierarchy = Hierarchy::new(&d);
         let mut truncation = Truncation::new(&hierarchy);
@@ -362,7 +362,7 @@ proptest! {
         height in 0.0..0.5f64,
         stiff in 0.01..100.0f64,
     ) {
-        let mesh = (0..refinements).fold(irregular(cells), |mesh, _| mesh.refine().mesh);
+        let mesh = (0..refinements).fold(irregular(cells), |mesh, _| mesh.refine().unwrap().mesh);
         let f1 = Function::from_fn(move |x: f64, y: f64| loads[0] + loads[1] * (7.0 * x * y).sin());
         let f2 = Function::from_fn(move |x: f64, y: f64| loads[2] + loads[3] * (5.0 * x - 3.0 * y).cos());
         let problem = ContactProblem::builder().tension(1.0, stiff).load(f1, f2).height(height).build().unwrap();

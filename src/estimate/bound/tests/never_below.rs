@@ -1,8 +1,11 @@
 //! The bound is never below the true error.
 
-use super::{ErrorBound, bound, energy_error};
+use super::{ErrorBound, bound};
+use crate::action::certify;
 use crate::discretization::Discretization;
+use crate::estimate::energy_error as measure;
 use crate::estimate::tests::{exact, mesh, problem, solve};
+use crate::geometry::friedrichs;
 use crate::mesh::samples::{Random, irregular};
 use crate::mesh::{Mesh, disk, polygon};
 use crate::problem::{Case, ContactProblem, Domain, ExactSolution, Function};
@@ -14,6 +17,11 @@ const COARSE: f64 = 3.0;
 
 /// Rounding of a bound and an error that are zero.
 const ROUNDING: f64 = 1e-10;
+
+/// `|||u - u_h|||` of any displacements.
+fn energy_error(d: &Discretization, displacement: &[Vec<f64>; 2], exact: &ExactSolution) -> f64 {
+    measure(d, displacement, exact).unwrap()
+}
 
 fn assert_bounds(name: &str, exact: &ExactSolution, mesh: &Mesh) {
     let problem = problem(exact);
@@ -112,8 +120,8 @@ fn on_random_polygons_against_a_finer_solution() {
         let d = Discretization::new(&problem, coarse.clone()).unwrap();
         let solution = solve(&d);
         let found = ErrorBound::new(&problem, None, &d, solution.displacement()).unwrap().total;
-        let first = coarse.refine();
-        let second = first.mesh.refine();
+        let first = coarse.refine().unwrap();
+        let second = first.mesh.refine().unwrap();
         let mut difference = solution.displacement().clone();
         for parents in [&first.parents, &second.parents] {
             for u in &mut difference {
@@ -182,6 +190,42 @@ fn of_displacements_that_do_not_solve_the_problem() {
         algebraic += usize::from(found.parts.discretization() < error);
     }
     assert!(algebraic > 0);
+}
+
+/// Of solutions of every solver, as they are and loose, with their own action: what was cut off of gaps and actions is in the bound.
+#[test]
+fn of_solutions_that_were_projected() {
+    let exact = exact(Case::Circle, &[("mu1", 1.0), ("mu2", 3.0)]);
+    let problem = problem(&exact);
+    let mesh = mesh(&exact.domain(), 24);
+    let d = Discretization::new(&problem, mesh.clone()).unwrap();
+    let solvers: [Box<dyn ContactSolver>; 3] =
+        [Box::new(ActiveSet), Box::new(Multigrid), Box::new(QpSolver::new(Clarabel))];
+    let mut cut = 0;
+    for mut solver in solvers {
+        for tolerance in [1e-2, 1e-4, 1e-8] {
+            let options = SolverOptions { tolerance, polish: false, ..SolverOptions::default() };
+            let solution = certify(&d, solver.solve(&d, &options).unwrap(), tolerance).unwrap();
+            let found = ErrorBound::of_solution(&problem, None, &d, &solution).unwrap();
+            let error = energy_error(&d, solution.displacement(), &exact);
+            let is = format!("{}, {tolerance:e}: {found:?}, error {error:e}", solver.name());
+            assert!(found.total >= error, "{is}");
+            // Each membrane is out of balance with the action by no less than what was cut off of it.
+            let lost_sq = |i: usize| {
+                let force = d.imbalance(i, &solution.displacement()[i]);
+                let rest = d.interior().iter().zip(force).map(|(&a, force)| {
+                    let sign = if i == 0 { 1.0 } else { -1.0 };
+                    d.dual_area()[a] * (sign * force / d.dual_area()[a] - solution.lambda()[a]).powi(2)
+                });
+                rest.sum::<f64>() / d.tension()[i]
+            };
+            let lost = friedrichs([1.0, 1.0]) * (lost_sq(0) + lost_sq(1)).sqrt();
+            assert!((found.parts.algebraic - lost).abs() <= 1e-9 * lost.max(1.0), "{is} {lost:e}");
+            assert!(d.interior().iter().all(|&a| found.action[a] == solution.lambda()[a]), "one action");
+            cut += usize::from(found.parts.algebraic > 0.1 * found.parts.discretization());
+        }
+    }
+    assert!(cut > 0, "there is something to be seen");
 }
 
 /// Each membrane for itself in equilibrium with its load, as if the other were not there: fluxes and actions are perfect, and the
