@@ -2,9 +2,9 @@
 
 mod bound;
 mod lift;
-mod multigrid;
 mod norms;
 mod residual;
+mod spaces;
 #[cfg(test)]
 mod tests;
 

@@ -23,7 +23,7 @@ use crate::qp::{Answer, BackendError, Status};
 use crate::text::Number;
 
 /// Anything that solves (3.4): a [`QpBackend`](crate::qp::QpBackend) by way of [`QpSolver`], or a method of its own.
-pub trait ContactSolver {
+pub trait ContactSolver: Send {
     /// The name in summaries and messages.
     fn name(&self) -> &str;
 
@@ -32,6 +32,33 @@ pub trait ContactSolver {
     /// # Errors
     /// [`SolverError`] when it cannot run at all.
     fn solve(&mut self, d: &Discretization, options: &SolverOptions) -> Result<Candidate, SolverError>;
+
+    /// The solver for one discretization, to be solved more than once: what can be used again is made once. As it is, nothing
+    /// is kept.
+    fn prepare<'s>(&'s mut self, d: &'s Discretization) -> Box<dyn PreparedSolver + 's> {
+        Box::new(Unprepared { solver: self, d })
+    }
+}
+
+/// A solver together with the one discretization that it solves.
+pub trait PreparedSolver {
+    /// Solves the problem, likewise.
+    ///
+    /// # Errors
+    /// [`SolverError`] when it cannot run at all.
+    fn solve(&mut self, options: &SolverOptions) -> Result<Candidate, SolverError>;
+}
+
+/// A solver that keeps nothing.
+struct Unprepared<'s, S: ?Sized> {
+    solver: &'s mut S,
+    d: &'s Discretization,
+}
+
+impl<S: ContactSolver + ?Sized> PreparedSolver for Unprepared<'_, S> {
+    fn solve(&mut self, options: &SolverOptions) -> Result<Candidate, SolverError> {
+        self.solver.solve(self.d, options)
+    }
 }
 
 /// What is asked of a solver.
@@ -138,6 +165,9 @@ pub struct Statistics {
     pub energies: Vec<f64>,
     /// Which solver was chosen and why, when that was left open.
     pub choice: Option<String>,
+    /// What was tried before and stalled, in this order. Its seconds are among those below.
+    #[cfg_attr(feature = "files", serde(default, skip_serializing_if = "Vec::is_empty"))]
+    pub stalled: Vec<Stalled>,
     /// Seconds spent before the first iteration. Not kept with the rest: they are another number in each run.
     #[cfg_attr(feature = "files", serde(skip))]
     pub setup_seconds: f64,
@@ -158,11 +188,35 @@ impl Statistics {
             level_iterations: Vec::new(),
             energies: Vec::new(),
             choice: None,
+            stalled: Vec::new(),
             setup_seconds: 0.0,
             solve_seconds: 0.0,
             polish: None,
         }
     }
+
+    /// When this is what was found after another method had stalled: its seconds count as well.
+    fn after(self, method: String, stalled: Self) -> Self {
+        let mut all = stalled.stalled;
+        all.push(Stalled { method, iterations: stalled.iterations });
+        all.extend(self.stalled);
+        Self {
+            stalled: all,
+            setup_seconds: stalled.setup_seconds + self.setup_seconds,
+            solve_seconds: stalled.solve_seconds + self.solve_seconds,
+            ..self
+        }
+    }
+}
+
+/// A method that has made no more progress.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
+pub struct Stalled {
+    /// The method, and the levels on which it ran.
+    pub method: String,
+    /// Iterations made, on the finest level where there are several.
+    pub iterations: usize,
 }
 
 impl From<NotFactored> for SolverError {

@@ -16,7 +16,6 @@ use super::solve::{PICTURE as MEMBRANES, SOLUTION, SUMMARY, write_solution};
 use super::terminal::{grouped, print};
 use super::watch::Watch;
 use super::{CaseFile, Failure};
-use crate::discretization::Discretization;
 use crate::estimate::LoadWarning;
 use crate::mesh::{DualMesh, MeshError, SubTriangulation};
 use crate::output::{Seconds, Summary, read_checkpoint, write_checkpoint};
@@ -204,15 +203,17 @@ fn write_results(
     levels: &[AdaptiveLevel],
 ) -> Result<(), Failure> {
     let case = &setup.case;
-    let (Some((solution, bound)), Some(last)) = (study.solution(), levels.last()) else { return Ok(()) };
+    let (Some((solution, bound)), Some(d), Some(last)) =
+        (study.solution(), study.discretization(), levels.last())
+    else {
+        return Ok(());
+    };
     let failed = |name: &str, error: &dyn std::fmt::Display| Failure::Input(format!("{name}: {error}"));
     let mesh = study.mesh();
-    let d =
-        Discretization::new(study.problem(), mesh.clone()).map_err(|error| failed(&case.title, &error))?;
     let mut results = Results::new(folder);
-    write_solution(&mut results, &case.title, &d, solution, bound)?;
+    write_solution(&mut results, &case.title, d, solution, bound)?;
     let seconds = Seconds { bound: last.bound_seconds, ..Seconds::default() };
-    let summary = Summary::new(&case.title, &d, last.tolerance, Ok(solution), seconds, Some(bound))
+    let summary = Summary::new(&case.title, d, last.tolerance, Ok(solution), seconds, Some(bound))
         .with_unused_groups(&setup.groups);
 
     let sub = SubTriangulation::new(mesh).map_err(|error| failed(MESH, &error))?;

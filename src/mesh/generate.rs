@@ -10,6 +10,7 @@ pub use structured::{Pattern, disk, l_shape, rectangle};
 
 use super::Mesh;
 use crate::problem::Domain;
+#[cfg(feature = "cli")]
 pub(crate) use error::MAX_VERTICES;
 
 use error::check_vertex_estimate;

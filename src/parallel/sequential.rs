@@ -90,6 +90,10 @@ impl<I: Iterator> Sequential<I> {
         self.0.max()
     }
 
+    pub(crate) fn count(self) -> usize {
+        self.0.count()
+    }
+
     pub(crate) fn collect<C: FromIterator<I::Item>>(self) -> C {
         self.0.collect()
     }
@@ -130,6 +134,7 @@ impl<T> ParallelSlice<T> for [T] {
 pub(crate) trait ParallelSliceMut<T> {
     fn par_iter_mut(&mut self) -> Sequential<std::slice::IterMut<'_, T>>;
     fn par_chunks_mut(&mut self, size: usize) -> Sequential<std::slice::ChunksMut<'_, T>>;
+    fn par_sort_unstable_by(&mut self, order: impl FnMut(&T, &T) -> std::cmp::Ordering);
 }
 
 impl<T> ParallelSliceMut<T> for [T] {
@@ -139,5 +144,9 @@ impl<T> ParallelSliceMut<T> for [T] {
 
     fn par_chunks_mut(&mut self, size: usize) -> Sequential<std::slice::ChunksMut<'_, T>> {
         Sequential(self.chunks_mut(size))
+    }
+
+    fn par_sort_unstable_by(&mut self, order: impl FnMut(&T, &T) -> std::cmp::Ordering) {
+        self.sort_unstable_by(order);
     }
 }

@@ -8,7 +8,7 @@ use super::QpProblem;
 ///
 /// The problem arrives in units in which `x` and `P x + q` have size about 1, so that one absolute tolerance fits. The
 /// answer is judged by residuals recomputed elsewhere, never by the status.
-pub trait QpBackend {
+pub trait QpBackend: Send {
     /// The name in summaries and messages.
     fn name(&self) -> &str;
 

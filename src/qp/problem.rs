@@ -129,7 +129,11 @@ impl QpProblem {
     }
 
     /// `P x`.
+    ///
+    /// # Panics
+    /// When `x` has not one entry for each variable.
     pub fn p_times(&self, x: &[f64]) -> Vec<f64> {
+        assert_eq!(x.len(), self.q.len(), "one entry for each variable");
         let mut product = vec![0.0; x.len()];
         for (column, entries) in self.p_upper.outer_iterator().enumerate() {
             for (row, &value) in entries.iter() {
@@ -143,7 +147,11 @@ impl QpProblem {
     }
 
     /// `A x`.
+    ///
+    /// # Panics
+    /// When `x` has not one entry for each variable.
     pub fn a_times(&self, x: &[f64]) -> Vec<f64> {
+        assert_eq!(x.len(), self.q.len(), "one entry for each variable");
         let mut product = vec![0.0; self.b.len()];
         for (entries, x) in self.a.outer_iterator().zip(x) {
             for (row, value) in entries.iter() {
@@ -154,7 +162,11 @@ impl QpProblem {
     }
 
     /// `A'y`.
+    ///
+    /// # Panics
+    /// When `y` has not one entry for each constraint.
     pub fn a_transposed_times(&self, y: &[f64]) -> Vec<f64> {
+        assert_eq!(y.len(), self.b.len(), "one entry for each constraint");
         self.a
             .outer_iterator()
             .map(|entries| entries.iter().map(|(row, value)| value * y[row]).sum())
@@ -162,6 +174,9 @@ impl QpProblem {
     }
 
     /// `1/2 x'P x + q'x + c`.
+    ///
+    /// # Panics
+    /// When `x` has not one entry for each variable.
     pub fn objective(&self, x: &[f64]) -> f64 {
         let px = self.p_times(x);
         let sum: f64 = px.iter().zip(&self.q).zip(x).map(|((px, q), x)| (0.5 * px + q) * x).sum();
@@ -284,5 +299,24 @@ mod tests {
         let raised = qp.with_constant(0.5).unwrap().with_scales(2.0, 4.0).unwrap();
         assert_eq!(raised.objective(&x), 0.5 * (4.0 + 18.0) + 1.0 - 2.0 + 0.5);
         assert_eq!(8.0 * raised.nondimensional().objective(&[0.5, 1.0]), raised.objective(&x));
+    }
+
+    #[test]
+    fn vectors_of_another_length_are_refused() {
+        let p = matrix((2, 2), &[(0, 0, 2.0), (1, 1, 4.0)]);
+        let a = matrix((1, 2), &[(0, 0, 1.0), (0, 1, -3.0)]);
+        let qp = QpProblem::new(p, vec![1.0, -1.0], a, vec![0.0]).unwrap();
+        let products: [fn(&QpProblem, &[f64]); 4] = [
+            |qp, x| drop(qp.a_times(x)),
+            |qp, x| drop(qp.p_times(x)),
+            |qp, x| assert!(qp.objective(x).is_finite()),
+            |qp, x| drop(qp.a_transposed_times(&x[1..])),
+        ];
+        for product in products {
+            let is_refused = |length: usize| {
+                std::panic::catch_unwind(|| product(&qp, &[1.0, 2.0, 3.0][..length])).is_err()
+            };
+            assert_eq!([1, 2, 3].map(is_refused), [true, false, true]);
+        }
     }
 }

@@ -87,15 +87,16 @@ pub fn solve_bounded(
     options: &SolverOptions,
     tolerance: Tolerance,
 ) -> Result<Bounded, AccuracyError> {
-    let at = |tolerance: f64, solver: &mut dyn ContactSolver, options: &SolverOptions| {
-        let candidate = solver.solve(d, &SolverOptions { tolerance, ..options.clone() })?;
+    let mut solver = solver.prepare(d);
+    let mut at = |tolerance: f64, options: &SolverOptions| {
+        let candidate = solver.solve(&SolverOptions { tolerance, ..options.clone() })?;
         let solution = certify(d, candidate, tolerance)
             .map_err(|rejected| AccuracyError::Rejected(rejected, tolerance))?;
         Ok(Bounded::new(problem, domain, d, solution, tolerance)?)
     };
     let Tolerance::Fixed(tolerance) = tolerance else {
         let start = Instant::now();
-        let mut bounded = at(LOOSEST, solver, options)?;
+        let mut bounded = at(LOOSEST, options)?;
         // What cannot be had more accurately, or not in time, is certified as it is.
         while let Some(tighter) = bounded.tighter() {
             let time_limit = options.time_limit.map(|limit| limit - start.elapsed().as_secs_f64());
@@ -103,7 +104,7 @@ pub fn solve_bounded(
                 break;
             }
             let warm_start = Some(Fields::from(&bounded.solution).into_start(d));
-            match at(tighter, solver, &SolverOptions { warm_start, time_limit, ..options.clone() }) {
+            match at(tighter, &SolverOptions { warm_start, time_limit, ..options.clone() }) {
                 Ok(better) => bounded = better,
                 Err(AccuracyError::Rejected(..)) => break,
                 Err(error) => return Err(error),
@@ -111,7 +112,7 @@ pub fn solve_bounded(
         }
         return Ok(bounded);
     };
-    at(tolerance, solver, options)
+    at(tolerance, options)
 }
 
 impl Bounded {

@@ -32,8 +32,8 @@ pub struct AdaptiveStudy {
     options: SolverOptions,
     tolerance: Tolerance,
     marked: Vec<Vec<usize>>,
-    /// The solution on the current mesh.
-    last: Option<Bounded>,
+    /// The current mesh's discretization and solution.
+    last: Option<(Discretization, Bounded)>,
 }
 
 /// One level: a mesh and the error on it. Written as a row of `adapt.csv`.
@@ -140,7 +140,12 @@ impl AdaptiveStudy {
 
     /// The solution on the current mesh and its bound, once there is one.
     pub fn solution(&self) -> Option<(&ContactSolution, &ErrorBound)> {
-        self.last.as_ref().map(|last| (&last.solution, &last.bound))
+        self.last.as_ref().map(|(_, last)| (&last.solution, &last.bound))
+    }
+
+    /// The discretization that it solves.
+    pub fn discretization(&self) -> Option<&Discretization> {
+        self.last.as_ref().map(|(d, _)| d)
     }
 
     /// Refines where the error of the last level is (but for the first level), solves and bounds the error.
@@ -151,7 +156,7 @@ impl AdaptiveStudy {
         let start = Instant::now();
         let prolonged = match &self.last {
             None => None,
-            Some(last) => {
+            Some((_, last)) => {
                 let marked = mark(&last.bound.indicators, FRACTION);
                 let parents = self.bisection.refine(&marked)?;
                 self.marked.push(marked);
@@ -168,7 +173,7 @@ impl AdaptiveStudy {
             .map_err(|error| StudyError::at(level, error))?;
         let seconds = start.elapsed().as_secs_f64();
         let row = self.row(&d, &bounded, seconds)?;
-        self.last = Some(bounded);
+        self.last = Some((d, bounded));
         Ok(row)
     }
 
@@ -210,7 +215,7 @@ impl AdaptiveStudy {
 
     /// What a later run goes on from; `None` before the first level.
     pub fn checkpoint(&self) -> Option<Checkpoint> {
-        self.last.as_ref().map(|last| {
+        self.last.as_ref().map(|(_, last)| {
             let (displacement, lambda) = last.solution.certified();
             Checkpoint {
                 marked: self.marked.clone(),
@@ -253,7 +258,8 @@ impl AdaptiveStudy {
         let Ok(solution) = certify(&d, Candidate { displacement, multiplier, statistics }, tolerance) else {
             return Ok(false);
         };
-        self.last = Some(Bounded::new(&self.problem, self.domain.as_ref(), &d, solution, tolerance)?);
+        let bounded = Bounded::new(&self.problem, self.domain.as_ref(), &d, solution, tolerance)?;
+        self.last = Some((d, bounded));
         self.marked = marked;
         self.bisection = bisection;
         Ok(true)

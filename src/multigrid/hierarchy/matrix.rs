@@ -1,11 +1,12 @@
 //! Symmetric matrices in compact rows.
 
+use sprs::CsMat;
+
 use crate::parallel::prelude::*;
 
 use super::galerkin::RowSum;
 use super::inverse;
 use super::runs::{LONGEST, Runs};
-use crate::discretization::Discretization;
 use crate::mesh::VertexKind;
 
 /// Rows that are made together.
@@ -27,6 +28,8 @@ pub(crate) struct Values {
     pub(crate) inverse: Vec<f64>,
     /// Whether the rows of each run share a stencil.
     pub(crate) shared: Vec<bool>,
+    /// Whether rows of each run have been replaced: they may be coupled to others of their colour.
+    pub(crate) replaced: Vec<bool>,
 }
 
 /// Consecutive rows of a matrix.
@@ -129,9 +132,16 @@ impl Values {
         }
     }
 
-    /// The rows of a run have no common stencil any more.
+    /// Rows of a run are replaced: they have no common stencil any more, and may be coupled to others of their colour.
     pub(crate) fn part(&mut self, run: usize) {
         self.shared[run] = false;
+        self.replaced[run] = true;
+    }
+
+    /// Whether a row of a run may be coupled to others of its colour.
+    #[inline(always)]
+    pub(crate) fn is_replaced(&self, run: usize) -> bool {
+        self.replaced[run]
     }
 
     /// Replaces the row `i` by a sum whose columns are in the pattern.
@@ -166,6 +176,7 @@ pub(crate) fn assemble(blocks: Vec<Rows>) -> (Pattern, Values) {
         diagonal: vec![0.0; rows],
         inverse: vec![0.0; rows],
         shared: Vec::new(),
+        replaced: Vec::new(),
     };
     let (mut start, mut column) = (&mut pattern.start[1..], &mut pattern.column[..]);
     let mut off_diagonal = &mut values.off_diagonal[..];
@@ -222,9 +233,7 @@ pub(crate) fn reordered(
 }
 
 /// `K` with empty rows for held vertices, the vertices in this order.
-pub(crate) fn compact_stiffness(d: &Discretization, order: &[u32]) -> (Pattern, Values) {
-    let k = d.stiffness();
-    let kind = d.mesh().kind();
+pub(crate) fn compact_stiffness(k: &CsMat<f64>, kind: &[VertexKind], order: &[u32]) -> (Pattern, Values) {
     let position = inverse(order);
     let block = |block: &[u32]| {
         let mut rows = Rows::with_capacity(BLOCK);

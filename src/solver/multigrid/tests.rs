@@ -177,14 +177,39 @@ fn on_stretched_triangles_the_levels_are_algebraic() {
     let mesh = rectangle([0.0, 0.0], [1.0, 0.01], [64; 2], Pattern::Right).unwrap();
     let problem = ContactProblem::builder().tension(1.0, 3.0).load(-1.5e5, 1e5).height(0.1).build().unwrap();
     let d = Discretization::new(&problem, mesh.clone()).unwrap();
-    let status = |levels| {
-        let candidate = Multigrid.solve_on(levels, &d, &options(), Instant::now()).expect("it runs");
+    let status = |levels: fn(&Discretization) -> Hierarchy| {
+        let candidate = solve_on(&levels(&d), &d, &options(), Instant::now()).expect("it runs");
         candidate.statistics.status
     };
     assert_eq!(status(Hierarchy::new), Status::Stalled);
     assert_eq!(status(Hierarchy::algebraic), Status::Solved);
     let candidate = solve_by(&mut Multigrid, &d, &options());
+    let tried = &candidate.statistics.stalled;
+    assert!(tried.len() == 1 && tried[0].iterations > 0, "what stalled is recorded: {tried:?}");
+    // Once it has gone over, it stays there; and is the solver that it would be anew.
+    let mut multigrid = Multigrid;
+    let mut prepared = multigrid.prepare(&d);
+    let [first, again] = [(); 2].map(|()| prepared.solve(&options()).expect("it runs"));
+    assert_eq!(first.statistics.stalled, *tried);
+    assert!(again.statistics.stalled.is_empty());
+    assert_eq!(first.displacement, candidate.displacement);
+    assert_eq!(again.displacement, candidate.displacement);
     assert!(certify(&d, candidate, TOLERANCE).is_ok());
+}
+
+/// Levels that are kept are those that would be made anew, whatever was asked for before.
+#[test]
+fn a_prepared_solver_finds_what_the_solver_finds() {
+    let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [32; 2], Pattern::Right).unwrap();
+    let d = Discretization::new(&problem([1.0, 2.0], 0.05), mesh).unwrap();
+    let mut multigrid = Multigrid;
+    let mut prepared = multigrid.prepare(&d);
+    for tolerance in [1e-3, 1e-9, 1e-6] {
+        let options = SolverOptions { tolerance, ..SolverOptions::default() };
+        let found = prepared.solve(&options).expect("it runs");
+        assert_eq!(found.displacement, solve_by(&mut Multigrid, &d, &options).displacement);
+        assert_eq!(certify(&d, found, 1e-9).is_ok(), tolerance == 1e-9, "the tolerance is that asked for");
+    }
 }
 
 /// Slow progress is progress, as on 2 x 8 flat crossed cells; none is none.
@@ -192,7 +217,7 @@ fn on_stretched_triangles_the_levels_are_algebraic() {
 fn a_slow_pace_is_kept_and_none_is_given_up() {
     let mesh = rectangle([0.0, 0.0], [1.55, 0.5], [2, 8], Pattern::Crossed).unwrap();
     let d = Discretization::new(&problem([1.0, 1.0], 0.0), mesh.clone()).unwrap();
-    let slow = Multigrid.solve_on(Hierarchy::new, &d, &options(), Instant::now()).expect("it runs");
+    let slow = solve_on(&Hierarchy::new(&d), &d, &options(), Instant::now()).expect("it runs");
     assert_eq!(slow.statistics.status, Status::Solved);
     assert!(slow.statistics.iterations > 2 * CYCLES, "it is slow: {}", slow.statistics.iterations);
 

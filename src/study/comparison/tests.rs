@@ -1,5 +1,5 @@
-use std::cell::Cell;
-use std::rc::Rc;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::*;
 use crate::mesh::Mesh;
@@ -38,7 +38,7 @@ fn rows(solver: impl ContactSolver + 'static, options: SolverOptions) -> Vec<Row
 /// Solves, and then says or does something else.
 struct Altered<F>(F);
 
-impl<F: FnMut(Candidate) -> Result<Candidate, SolverError>> ContactSolver for Altered<F> {
+impl<F: FnMut(Candidate) -> Result<Candidate, SolverError> + Send> ContactSolver for Altered<F> {
     fn name(&self) -> &str {
         "altered"
     }
@@ -103,11 +103,11 @@ fn a_wrong_candidate_is_not_certified_whatever_it_says() {
 
 #[test]
 fn one_wrong_run_of_several_is_the_one_that_counts() {
-    let runs = Rc::new(Cell::new(0));
+    let runs = Arc::new(AtomicUsize::new(0));
     let counted = runs.clone();
     let second_is_wrong = Altered(move |mut candidate: Candidate| {
-        counted.set(counted.get() + 1);
-        if counted.get() == 2 {
+        counted.fetch_add(1, Ordering::Relaxed);
+        if counted.load(Ordering::Relaxed) == 2 {
             candidate.displacement[0][12] += 1.0;
         }
         Ok(candidate)
@@ -115,7 +115,7 @@ fn one_wrong_run_of_several_is_the_one_that_counts() {
     let rows = rows(second_is_wrong, SolverOptions::default());
     assert!(!rows[0].certified);
     assert!(rows[1].certified);
-    assert_eq!(runs.get(), 2 + REPEAT);
+    assert_eq!(runs.load(Ordering::Relaxed), 2 + REPEAT);
 }
 
 #[test]
@@ -129,10 +129,10 @@ fn a_solver_that_cannot_run_is_a_row_with_its_message() {
 
 #[test]
 fn who_exceeds_the_time_limit_is_not_tried_on_larger_meshes_of_that_problem() {
-    let runs = Rc::new(Cell::new(0));
+    let runs = Arc::new(AtomicUsize::new(0));
     let counted = runs.clone();
     let slow: Box<dyn ContactSolver> = Box::new(Altered(move |mut candidate: Candidate| {
-        counted.set(counted.get() + 1);
+        counted.fetch_add(1, Ordering::Relaxed);
         candidate.statistics.status = Status::TimeLimit;
         Ok(candidate)
     }));
@@ -150,7 +150,7 @@ fn who_exceeds_the_time_limit_is_not_tried_on_larger_meshes_of_that_problem() {
     assert_eq!(status(skipped), [SKIPPED, "solved"]);
     assert_eq!(status(on("another", 1)), ["time_limit", "solved"]);
     assert_eq!(status(on(SQUARE, 0)), ["time_limit", "solved"], "a mesh that is no larger is tried again");
-    assert_eq!(runs.get(), 3 * REPEAT);
+    assert_eq!(runs.load(Ordering::Relaxed), 3 * REPEAT);
 }
 
 #[test]
