@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
-use super::case_file::BackendName;
+use super::case::BackendName;
 use crate::study::Tolerance;
 
 /// Where results go when no folder is named: a folder of this one, called like the case file.
@@ -27,13 +27,13 @@ A first run:
 Open solution.vtu in ParaView (or meshio, PyVista), membranes.png anywhere.
 Exit codes: 0 certified; 1 ran, but not certified; 2 bad input or usage."
 )]
-pub(super) struct Arguments {
+pub(crate) struct Arguments {
     #[command(subcommand)]
-    pub(super) command: Command,
+    pub(crate) command: Command,
 }
 
 #[derive(Debug, Subcommand)]
-pub(super) enum Command {
+pub(crate) enum Command {
     /// Solve a case and write solution.vtu, summary.json, membranes.png
     Solve(SolveArguments),
     /// Show every residual, from every backend or of an answer
@@ -51,131 +51,131 @@ pub(super) enum Command {
 }
 
 #[derive(Debug, Args)]
-pub(super) struct SolveArguments {
+pub(crate) struct SolveArguments {
     #[command(flatten)]
-    pub(super) case: CaseArguments,
+    pub(crate) case: CaseArguments,
     /// Solver: auto, multigrid, active-set, clarabel, osqp
     #[arg(long, value_name = "NAME")]
-    pub(super) backend: Option<BackendName>,
+    pub(crate) backend: Option<BackendName>,
     /// Folder for the results [default: out/CASE]
     #[arg(long, value_name = "DIR")]
-    pub(super) out: Option<PathBuf>,
+    pub(crate) out: Option<PathBuf>,
     /// Most seconds the solver may take
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
-    pub(super) time_limit: Option<f64>,
+    pub(crate) time_limit: Option<f64>,
     /// Largest relative residual, or auto
     #[arg(long, value_name = "T", value_parser = tolerance_or_auto, allow_negative_numbers = true)]
-    pub(super) tolerance: Option<Tolerance>,
+    pub(crate) tolerance: Option<Tolerance>,
     /// Leave the backend's answer as it is
     #[arg(long)]
-    pub(super) no_polish: bool,
+    pub(crate) no_polish: bool,
     /// Also write dual.vtu, flux.vtu, mesh.png
     #[arg(long)]
-    pub(super) dual: bool,
+    pub(crate) dual: bool,
 }
 
 #[derive(Debug, Args)]
-pub(super) struct CheckArguments {
+pub(crate) struct CheckArguments {
     #[command(flatten)]
-    pub(super) case: CaseArguments,
+    pub(crate) case: CaseArguments,
     /// Judge this answer (x, y) to the exported QP instead
     #[arg(long, value_name = "FILE")]
-    pub(super) answer: Option<PathBuf>,
+    pub(crate) answer: Option<PathBuf>,
     /// Folder for the summary.json of the answer
     #[arg(long, value_name = "DIR", requires = "answer")]
-    pub(super) out: Option<PathBuf>,
+    pub(crate) out: Option<PathBuf>,
     /// Largest relative residual, not the case file's
     #[arg(long, value_name = "T", value_parser = tolerance, allow_negative_numbers = true)]
-    pub(super) tolerance: Option<f64>,
+    pub(crate) tolerance: Option<f64>,
 }
 
 #[derive(Debug, Args)]
-pub(super) struct ConvergeArguments {
+pub(crate) struct ConvergeArguments {
     #[command(flatten)]
-    pub(super) case: CaseArguments,
+    pub(crate) case: CaseArguments,
     /// Meshes, each refined once more
     #[arg(long, value_name = "N", default_value_t = 5)]
-    pub(super) levels: usize,
+    pub(crate) levels: usize,
     /// Most seconds of this run
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
-    pub(super) time_limit: Option<f64>,
+    pub(crate) time_limit: Option<f64>,
     /// Solver: auto, multigrid, active-set, clarabel, osqp
     #[arg(long, value_name = "NAME")]
-    pub(super) backend: Option<BackendName>,
+    pub(crate) backend: Option<BackendName>,
     /// Folder, whose levels are kept [default: out/CASE]
     #[arg(long, value_name = "DIR")]
-    pub(super) out: Option<PathBuf>,
+    pub(crate) out: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
-pub(super) struct AdaptArguments {
+pub(crate) struct AdaptArguments {
     #[command(flatten)]
-    pub(super) case: CaseArguments,
+    pub(crate) case: CaseArguments,
     /// Guaranteed relative error to reach
     #[arg(long, value_name = "T", default_value = "0.01", value_parser = tolerance, allow_negative_numbers = true)]
-    pub(super) tolerance: f64,
+    pub(crate) tolerance: f64,
     /// Most vertices of a mesh
     #[arg(long, value_name = "N", default_value = "1000000", value_parser = at_least(3))]
-    pub(super) max_vertices: usize,
+    pub(crate) max_vertices: usize,
     /// Most seconds of this run
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
-    pub(super) time_limit: Option<f64>,
+    pub(crate) time_limit: Option<f64>,
     /// Solver: auto, multigrid, active-set, clarabel, osqp
     #[arg(long, value_name = "NAME")]
-    pub(super) backend: Option<BackendName>,
+    pub(crate) backend: Option<BackendName>,
     /// Folder, whose levels are kept [default: out/CASE]
     #[arg(long, value_name = "DIR")]
-    pub(super) out: Option<PathBuf>,
+    pub(crate) out: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
-pub(super) struct BenchArguments {
+pub(crate) struct BenchArguments {
     /// A case, refined level by level [default: a family on the square]
     #[arg(value_name = "CASE.toml", conflicts_with = "sizes")]
-    pub(super) case: Option<PathBuf>,
+    pub(crate) case: Option<PathBuf>,
     /// Meshes of N x N cells
     #[arg(long, value_name = "N,...", value_delimiter = ',', default_value = "64,128,256", value_parser = at_least(2))]
-    pub(super) sizes: Vec<usize>,
+    pub(crate) sizes: Vec<usize>,
     /// Meshes of the case, each one finer
     #[arg(long, value_name = "N", default_value = "4", value_parser = at_least(1), requires = "case")]
-    pub(super) levels: usize,
+    pub(crate) levels: usize,
     /// Solvers [default: all of this build]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
-    pub(super) solvers: Vec<BackendName>,
+    pub(crate) solvers: Vec<BackendName>,
     /// Seconds a solve may take
     #[arg(long, value_name = "S", default_value = "60", value_parser = seconds, allow_negative_numbers = true)]
-    pub(super) time_limit: f64,
+    pub(crate) time_limit: f64,
     /// Largest relative residual, not the case file's
     #[arg(long, value_name = "T", value_parser = tolerance, allow_negative_numbers = true)]
-    pub(super) tolerance: Option<f64>,
+    pub(crate) tolerance: Option<f64>,
     /// Also show rows of such a bench.csv; repeatable
     #[arg(long, value_name = "FILE.csv")]
-    pub(super) merge: Vec<PathBuf>,
+    pub(crate) merge: Vec<PathBuf>,
     /// Measure nothing, show the rows of --merge
     #[arg(long, requires = "merge")]
-    pub(super) no_run: bool,
+    pub(crate) no_run: bool,
     /// Folder for results [default: out/CASE, out/bench]
     #[arg(long, value_name = "DIR")]
-    pub(super) out: Option<PathBuf>,
+    pub(crate) out: Option<PathBuf>,
     /// No output on the terminal but errors
     #[arg(long, short)]
-    pub(super) quiet: bool,
+    pub(crate) quiet: bool,
 }
 
 #[derive(Debug, Args)]
-pub(super) struct ExportArguments {
+pub(crate) struct ExportArguments {
     #[command(flatten)]
-    pub(super) case: CaseArguments,
+    pub(crate) case: CaseArguments,
     /// File format
     #[arg(long, value_enum)]
-    pub(super) format: Format,
+    pub(crate) format: Format,
     /// Folder for the files [default: out/CASE]
     #[arg(long, value_name = "DIR")]
-    pub(super) out: Option<PathBuf>,
+    pub(crate) out: Option<PathBuf>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum Format {
+pub(crate) enum Format {
     /// problem.qps, for Gurobi, CPLEX (for HiGHS, rename it to .mps)
     Qps,
     /// problem.npz, for numpy and scipy
@@ -185,37 +185,37 @@ pub(super) enum Format {
 }
 
 #[derive(Debug, Args)]
-pub(super) struct CasesArguments {
+pub(crate) struct CasesArguments {
     /// Print this case as a complete case file
     #[arg(value_name = "NAME")]
-    pub(super) name: Option<String>,
+    pub(crate) name: Option<String>,
 }
 
 #[derive(Debug, Args)]
-pub(super) struct CaseArguments {
+pub(crate) struct CaseArguments {
     /// The case file (TOML)
     #[arg(value_name = "CASE.toml")]
-    pub(super) path: PathBuf,
+    pub(crate) path: PathBuf,
     /// Further uniform refinements of the mesh
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = refinements, allow_negative_numbers = true)]
-    pub(super) refine: u32,
+    pub(crate) refine: u32,
     /// Most GiB of memory [default: all that is free]
     #[arg(long, value_name = "GIB", value_parser = positive, allow_negative_numbers = true)]
-    pub(super) memory_limit: Option<f64>,
+    pub(crate) memory_limit: Option<f64>,
     /// No output on the terminal but errors
     #[arg(long, short)]
-    pub(super) quiet: bool,
+    pub(crate) quiet: bool,
 }
 
 impl CaseArguments {
     /// The folder for results: the one named, else `out/` and the name of the case file without its ending.
-    pub(super) fn output_folder(&self, named: Option<&PathBuf>) -> PathBuf {
+    pub(crate) fn output_folder(&self, named: Option<&PathBuf>) -> PathBuf {
         output_folder(&self.path, named)
     }
 }
 
 /// The folder for results: the one named, else `out/` and the name of `case` without its ending.
-pub(super) fn output_folder(case: &Path, named: Option<&PathBuf>) -> PathBuf {
+pub(crate) fn output_folder(case: &Path, named: Option<&PathBuf>) -> PathBuf {
     let stem = case.file_stem().unwrap_or(case.as_os_str());
     named.cloned().unwrap_or_else(|| PathBuf::from(OUTPUT).join(stem))
 }
@@ -254,7 +254,7 @@ fn positive(text: &str) -> Result<f64, String> {
 }
 
 /// What clap has to say, without its paragraphs on usage and on arguments that begin with a hyphen.
-pub(super) fn one_line(error: &clap::Error) -> String {
+pub(crate) fn one_line(error: &clap::Error) -> String {
     let text = error.to_string();
     let of_use = |paragraph: &&str| {
         let asides = ["Usage:", "For more information", "tip: to pass"];

@@ -11,7 +11,7 @@ use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::Failure;
+use crate::cli::failure::Failure;
 use crate::discretization::Discretization;
 use crate::output::discard_unfinished;
 use crate::solver::{Candidate, ContactSolver, SolverError, SolverOptions};
@@ -48,28 +48,28 @@ impl Alarm {
 
 /// Tells the waiting thread what to do when the run is ended from outside.
 #[derive(Clone)]
-pub(super) struct Watch {
+pub(crate) struct Watch {
     events: Sender<Event>,
 }
 
 impl Watch {
     /// Where the run writes, and what an interrupted one has to say of that.
-    pub(super) fn folder(&self, folder: &Path, says: &'static str) {
+    pub(crate) fn folder(&self, folder: &Path, says: &'static str) {
         self.tell(Event::Folder(folder.into(), says));
     }
 
     /// Ends the run by `give_up` when this many seconds have passed, and a little more, unless the limit is lifted before.
-    pub(super) fn limit(&self, seconds: f64, give_up: impl Fn() -> Failure + Send + Sync + 'static) {
+    pub(crate) fn limit(&self, seconds: f64, give_up: impl Fn() -> Failure + Send + Sync + 'static) {
         self.tell(Event::Alarm(Some(Alarm::after(seconds, Arc::new(give_up)))));
     }
 
     /// What follows is waited for.
-    pub(super) fn lift(&self) {
+    pub(crate) fn lift(&self) {
         self.tell(Event::Alarm(None));
     }
 
     /// The solver, whose time limit now holds whatever it does: a run whose solver does not come back ends by `give_up`.
-    pub(super) fn over(
+    pub(crate) fn over(
         &self,
         solver: Box<dyn ContactSolver>,
         give_up: impl Fn() -> Failure + Send + Sync + 'static,
@@ -105,7 +105,7 @@ impl ContactSolver for Watched {
 }
 
 /// Runs `work` until it ends, is interrupted, or its solver exceeds a limit.
-pub(super) fn watched(
+pub(crate) fn watched(
     work: impl FnOnce(&Watch) -> Result<(), Failure> + Send + 'static,
 ) -> Result<(), Failure> {
     let (events, inbox) = mpsc::channel();

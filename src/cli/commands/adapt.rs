@@ -5,17 +5,18 @@ use std::io::BufReader;
 use std::path::Path;
 use std::time::Instant;
 
-use super::args::AdaptArguments;
-use super::case_file::BackendName;
-use super::clock::Clock;
-use super::levels::{GOES_ON, KEPT, Levels, MEMORY, TIME, failure, origin};
-use super::memory::Memory;
-use super::progress::Progress;
-use super::setup::{Results, Setup, make_folder, options, solver, write_file};
 use super::solve::{PICTURE as MEMBRANES, SOLUTION, SUMMARY, write_solution};
-use super::terminal::{grouped, print};
-use super::watch::Watch;
-use super::{CaseFile, Failure};
+use crate::cli::args::AdaptArguments;
+use crate::cli::case::BackendName;
+use crate::cli::case::CaseFile;
+use crate::cli::failure::Failure;
+use crate::cli::run::clock::Clock;
+use crate::cli::run::levels::{GOES_ON, KEPT, Levels, MEMORY, TIME, failure, origin};
+use crate::cli::run::memory::Memory;
+use crate::cli::run::progress::Progress;
+use crate::cli::run::setup::{Results, Setup, make_folder, options, solver, write_file};
+use crate::cli::run::watch::Watch;
+use crate::cli::terminal::{grouped, print};
 use crate::discretization::Discretization;
 use crate::mesh::{DualMesh, MeshError, SubTriangulation};
 use crate::output::{Seconds, Summary, read_checkpoint, write_checkpoint};
@@ -51,7 +52,7 @@ enum Stop {
     TooSmall(MeshError),
 }
 
-pub(super) fn run(arguments: &AdaptArguments, watch: &Watch) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &AdaptArguments, watch: &Watch) -> Result<(), Failure> {
     let clock = Clock::new(arguments.time_limit);
     let progress = Progress::new(arguments.case.quiet);
     let mut setup = Setup::new(&arguments.case, &progress)?;

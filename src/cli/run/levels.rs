@@ -5,27 +5,27 @@ use std::path::Path;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::Failure;
-use super::args::CaseArguments;
-use super::case_file::BackendName;
 use super::setup::write_file;
+use crate::cli::args::CaseArguments;
+use crate::cli::case::BackendName;
+use crate::cli::failure::Failure;
 use crate::output::remove;
 use crate::study::StudyError;
 
 const VERSION: &str = concat!("membranes ", env!("CARGO_PKG_VERSION"));
 
 /// What an interrupted run has to say of its folder.
-pub(super) const KEPT: &str = "complete levels are kept, and the same command goes on from there";
+pub(crate) const KEPT: &str = "complete levels are kept, and the same command goes on from there";
 
 /// What a run that stops short has to say.
-pub(super) const GOES_ON: &str = "a run with a higher limit goes on from here";
+pub(crate) const GOES_ON: &str = "a run with a higher limit goes on from here";
 
 /// Why a run stops short.
-pub(super) const TIME: &str = "the next level would exceed the time limit (--time-limit)";
-pub(super) const MEMORY: &str = "the next level would need more memory than there is (--memory-limit)";
+pub(crate) const TIME: &str = "the next level would exceed the time limit (--time-limit)";
+pub(crate) const MEMORY: &str = "the next level would need more memory than there is (--memory-limit)";
 
 /// What to say when a solver does not come back in time.
-pub(super) fn too_late(name: &str) -> Failure {
+pub(crate) fn too_late(name: &str) -> Failure {
     Failure::NotCertified(format!(
         "{name}: the time was over within a level; {KEPT}, given more time (--time-limit)"
     ))
@@ -33,18 +33,18 @@ pub(super) fn too_late(name: &str) -> Failure {
 
 /// The levels of a study, a row of a table for each, and what they belong to: a run of another case file, solver or first mesh
 /// starts anew.
-pub(super) struct Levels<'a> {
+pub(crate) struct Levels<'a> {
     /// The folder.
-    pub(super) folder: &'a Path,
+    pub(crate) folder: &'a Path,
     /// The name of the table.
-    pub(super) table: &'static str,
+    pub(crate) table: &'static str,
     /// The name of the file that says what the levels belong to.
-    pub(super) origin: &'static str,
+    pub(crate) origin: &'static str,
 }
 
 impl Levels<'_> {
     /// The rows that an earlier run of the same origin has left; none when it was another one.
-    pub(super) fn so_far<T: DeserializeOwned>(&self, origin: &str) -> Result<Vec<T>, Failure> {
+    pub(crate) fn so_far<T: DeserializeOwned>(&self, origin: &str) -> Result<Vec<T>, Failure> {
         let table = self.folder.join(self.table);
         let known = std::fs::read_to_string(self.folder.join(self.origin));
         if known.is_ok_and(|text| text == origin)
@@ -62,7 +62,7 @@ impl Levels<'_> {
     }
 
     /// Writes all rows anew.
-    pub(super) fn write<T: Serialize>(&self, rows: &[T]) -> Result<(), Failure> {
+    pub(crate) fn write<T: Serialize>(&self, rows: &[T]) -> Result<(), Failure> {
         write_file(&self.folder.join(self.table), |out| {
             let mut writer = csv::Writer::from_writer(out);
             rows.iter().try_for_each(|row| writer.serialize(row))?;
@@ -72,13 +72,13 @@ impl Levels<'_> {
 }
 
 /// What the levels of a run belong to.
-pub(super) fn origin(case: &CaseArguments, backend: BackendName, text: &str) -> String {
+pub(crate) fn origin(case: &CaseArguments, backend: BackendName, text: &str) -> String {
     let backend = backend.as_str();
     format!("# {VERSION}, solved by {backend}, refined {} times first\n{text}", case.refine)
 }
 
 /// Why a study of the case file `name` fails.
-pub(super) fn failure(name: &str, error: &StudyError) -> Failure {
+pub(crate) fn failure(name: &str, error: &StudyError) -> Failure {
     let text = format!("{name}: {error}");
     match error {
         StudyError::Rejected { .. } | StudyError::Solver(_) | StudyError::Measure(_) => {

@@ -6,13 +6,13 @@ mod table;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::Failure;
-use super::args::{BenchArguments, CaseArguments, output_folder};
-use super::case_file::BackendName;
-use super::progress::Progress;
-use super::setup::{Setup, check_refinements, make_folder, solver};
-use super::terminal::{grouped, print};
-use super::watch::Watch;
+use crate::cli::args::{BenchArguments, CaseArguments, output_folder};
+use crate::cli::case::BackendName;
+use crate::cli::failure::Failure;
+use crate::cli::run::progress::Progress;
+use crate::cli::run::setup::{Setup, check_refinements, make_folder, solver};
+use crate::cli::run::watch::Watch;
+use crate::cli::terminal::{grouped, print};
 use crate::discretization::Discretization;
 use crate::mesh::{MAX_VERTICES, Mesh};
 use crate::problem::ContactProblem;
@@ -23,7 +23,7 @@ use files::{read_rows, write_results, write_rows};
 /// Where results go without a case file and without `--out`.
 const FAMILY: &str = "bench";
 
-pub(super) fn run(arguments: &BenchArguments, watch: &Watch) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &BenchArguments, watch: &Watch) -> Result<(), Failure> {
     let progress = Progress::new(arguments.quiet);
     let mut bench = Bench::new(arguments, &progress, watch)?;
     match &arguments.case {

@@ -3,13 +3,14 @@
 use std::path::Path;
 use std::time::Instant;
 
-use super::args::CaseArguments;
-use super::case_file::{BackendName, CaseFile, MeshSource};
 use super::memory::Memory;
 use super::progress::Progress;
-use super::terminal::grouped;
 use super::watch::Watch;
-use super::{Failure, SolverSettings};
+use crate::cli::args::CaseArguments;
+use crate::cli::case::SolverSettings;
+use crate::cli::case::{BackendName, CaseFile, MeshSource};
+use crate::cli::failure::Failure;
+use crate::cli::terminal::grouped;
 use crate::discretization::Discretization;
 use crate::mesh::{MAX_VERTICES, Mesh, MeshFamily, ReadError, estimated_vertices, generate};
 use crate::output::{FileSet, Seconds, WriteSeek, prepare_folder, write_atomically};
@@ -17,19 +18,19 @@ use crate::qp::Clarabel;
 use crate::solver::{ActiveSet, Auto, ContactSolver, Multigrid, QpSolver, SolverOptions};
 
 /// The case and its meshes.
-pub(super) struct Setup {
-    pub(super) name: String,
+pub(crate) struct Setup {
+    pub(crate) name: String,
     /// The text of the case file.
-    pub(super) text: String,
-    pub(super) case: CaseFile,
-    pub(super) family: MeshFamily,
-    pub(super) seconds: Seconds,
-    pub(super) memory: Memory,
+    pub(crate) text: String,
+    pub(crate) case: CaseFile,
+    pub(crate) family: MeshFamily,
+    pub(crate) seconds: Seconds,
+    pub(crate) memory: Memory,
 }
 
 impl Setup {
     /// Reads the case file and makes its mesh.
-    pub(super) fn new(arguments: &CaseArguments, progress: &Progress) -> Result<Self, Failure> {
+    pub(crate) fn new(arguments: &CaseArguments, progress: &Progress) -> Result<Self, Failure> {
         let name = arguments.path.display().to_string();
         let text = CaseFile::read_text(&arguments.path)?;
         let case = CaseFile::parse(&name, &text, &arguments.path)?;
@@ -42,12 +43,12 @@ impl Setup {
     }
 
     /// Refuses a solver that needs more memory on this mesh than there is.
-    pub(super) fn check_memory(&self, backend: BackendName) -> Result<(), Failure> {
+    pub(crate) fn check_memory(&self, backend: BackendName) -> Result<(), Failure> {
         self.memory.check(&self.name, backend, self.family.mesh().points().len() as f64)
     }
 
     /// Assembles the discrete problem, and says how long it took.
-    pub(super) fn discretize(&self, progress: &Progress) -> Result<(Discretization, Seconds), Failure> {
+    pub(crate) fn discretize(&self, progress: &Progress) -> Result<(Discretization, Seconds), Failure> {
         progress.stage(format!("assembling on {} vertices", grouped(self.family.mesh().points().len())));
         let start = Instant::now();
         let d = Discretization::new(&self.case.problem, self.family.mesh().clone())
@@ -93,7 +94,7 @@ fn make_mesh(name: &str, case: &CaseFile, further: usize, memory: Memory) -> Res
 }
 
 /// The vertices after so many refinements; refuses such that lead beyond what can be stored.
-pub(super) fn check_refinements(name: &str, vertices: f64, refinements: usize) -> Result<f64, Failure> {
+pub(crate) fn check_refinements(name: &str, vertices: f64, refinements: usize) -> Result<f64, Failure> {
     // Each refinement makes four times as many.
     let finest = vertices * 4f64.powf(refinements as f64);
     if finest <= MAX_VERTICES {
@@ -115,7 +116,7 @@ fn cannot_read(case: &str, mesh: &Path, error: &ReadError) -> Failure {
 }
 
 /// The solver of this name.
-pub(super) fn solver(name: BackendName) -> Box<dyn ContactSolver> {
+pub(crate) fn solver(name: BackendName) -> Box<dyn ContactSolver> {
     match name {
         BackendName::Clarabel => Box::new(QpSolver::new(Clarabel)),
         BackendName::ActiveSet => Box::new(ActiveSet),
@@ -129,7 +130,7 @@ pub(super) fn solver(name: BackendName) -> Box<dyn ContactSolver> {
 }
 
 /// What the settings ask of a solver.
-pub(super) fn options(settings: &SolverSettings) -> SolverOptions {
+pub(crate) fn options(settings: &SolverSettings) -> SolverOptions {
     SolverOptions {
         tolerance: settings.tolerance.or_default(),
         max_iterations: settings.max_iterations,
@@ -141,24 +142,24 @@ pub(super) fn options(settings: &SolverSettings) -> SolverOptions {
 
 /// Makes the folder for results: that nothing can be written there is said before anything is computed. `says` is what an
 /// interrupted run has to say of it.
-pub(super) fn make_folder(folder: &Path, watch: &Watch, says: &'static str) -> Result<(), Failure> {
+pub(crate) fn make_folder(folder: &Path, watch: &Watch, says: &'static str) -> Result<(), Failure> {
     prepare_folder(folder).map_err(|error| cannot_write(folder, &error))?;
     watch.folder(folder, says);
     Ok(())
 }
 
 /// The files of a result, which appear together, the summary last.
-pub(super) struct Results<'f> {
+pub(crate) struct Results<'f> {
     folder: &'f Path,
     files: FileSet,
 }
 
 impl<'f> Results<'f> {
-    pub(super) fn new(folder: &'f Path) -> Self {
+    pub(crate) fn new(folder: &'f Path) -> Self {
         Self { folder, files: FileSet::new(folder) }
     }
 
-    pub(super) fn write(
+    pub(crate) fn write(
         &mut self,
         name: &str,
         write: impl FnOnce(&mut (dyn WriteSeek + '_)) -> std::io::Result<()>,
@@ -168,13 +169,13 @@ impl<'f> Results<'f> {
             .map_err(|error| cannot_write(&self.folder.join(name), &error))
     }
 
-    pub(super) fn publish(self) -> Result<(), Failure> {
+    pub(crate) fn publish(self) -> Result<(), Failure> {
         self.files.publish().map_err(|error| cannot_write(self.folder, &error))
     }
 }
 
 /// Writes a result, whole or not at all.
-pub(super) fn write_file(
+pub(crate) fn write_file(
     path: &Path,
     write: impl FnOnce(&mut (dyn WriteSeek + '_)) -> std::io::Result<()>,
 ) -> Result<(), Failure> {

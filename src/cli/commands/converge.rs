@@ -2,16 +2,16 @@
 
 use std::path::Path;
 
-use super::Failure;
-use super::args::ConvergeArguments;
-use super::case_file::BackendName;
-use super::clock::Clock;
-use super::levels::{GOES_ON, KEPT, Levels, MEMORY, TIME, failure, origin};
-use super::memory::Memory;
-use super::progress::Progress;
-use super::setup::{Setup, make_folder, options, solver, write_file};
-use super::terminal::{grouped, print};
-use super::watch::Watch;
+use crate::cli::args::ConvergeArguments;
+use crate::cli::case::BackendName;
+use crate::cli::failure::Failure;
+use crate::cli::run::clock::Clock;
+use crate::cli::run::levels::{GOES_ON, KEPT, Levels, MEMORY, TIME, failure, origin};
+use crate::cli::run::memory::Memory;
+use crate::cli::run::progress::Progress;
+use crate::cli::run::setup::{Setup, make_folder, options, solver, write_file};
+use crate::cli::run::watch::Watch;
+use crate::cli::terminal::{grouped, print};
 use crate::pictures::{RatesPicture, Series, render_rates};
 use crate::study::{ConvergenceStudy, LevelErrors, MEASURES, fitted_rate, markdown, rate};
 
@@ -26,7 +26,7 @@ const ORIGIN: &str = "converge.toml";
 /// Each refinement makes four times as many triangles, and our solvers need time in proportion.
 const GROWTH: f64 = 4.0;
 
-pub(super) fn run(arguments: &ConvergeArguments, watch: &Watch) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &ConvergeArguments, watch: &Watch) -> Result<(), Failure> {
     let clock = Clock::new(arguments.time_limit);
     let progress = Progress::new(arguments.case.quiet);
     let mut setup = Setup::new(&arguments.case, &progress)?;

@@ -3,14 +3,14 @@
 use std::path::Path;
 use std::time::Instant;
 
-use super::Failure;
-use super::args::SolveArguments;
-use super::case_file::CaseFile;
-use super::progress::Progress;
-use super::setup::{Results, Setup, make_folder, options, solver};
-use super::terminal::{fields, fixed, grouped, print};
-use super::watch::Watch;
 use crate::action::{ContactSolution, Rejected};
+use crate::cli::args::SolveArguments;
+use crate::cli::case::CaseFile;
+use crate::cli::failure::Failure;
+use crate::cli::run::progress::Progress;
+use crate::cli::run::setup::{Results, Setup, make_folder, options, solver};
+use crate::cli::run::watch::Watch;
+use crate::cli::terminal::{fields, fixed, grouped, print};
 use crate::discretization::Discretization;
 use crate::estimate::ErrorBound;
 use crate::fem::element_loads;
@@ -24,9 +24,9 @@ use crate::solver::{PolishReport, Statistics};
 use crate::study::{AccuracyError, Bounded, solve_bounded};
 
 /// The files that hold a solution: present only when it is certified.
-pub(super) const SOLUTION: &str = "solution.vtu";
-pub(super) const PICTURE: &str = "membranes.png";
-pub(super) const SUMMARY: &str = "summary.json";
+pub(crate) const SOLUTION: &str = "solution.vtu";
+pub(crate) const PICTURE: &str = "membranes.png";
+pub(crate) const SUMMARY: &str = "summary.json";
 /// What `--dual` adds.
 const DUAL: &str = "dual.vtu";
 const MESH_PICTURE: &str = "mesh.png";
@@ -35,7 +35,7 @@ const FLUX: &str = "flux.vtu";
 /// What an interrupted run has to say.
 const UNTOUCHED: &str = "it is as it was";
 
-pub(super) fn run(arguments: &SolveArguments, watch: &Watch) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &SolveArguments, watch: &Watch) -> Result<(), Failure> {
     let progress = Progress::new(arguments.case.quiet);
     let mut setup = Setup::new(&arguments.case, &progress)?;
     override_settings(&mut setup, arguments);
@@ -134,7 +134,7 @@ fn override_settings(setup: &mut Setup, arguments: &SolveArguments) {
 }
 
 /// `solution.vtu` and `membranes.png`.
-pub(super) fn write_solution(
+pub(crate) fn write_solution(
     results: &mut Results,
     title: &str,
     d: &Discretization,

@@ -1,14 +1,14 @@
 //! `membranes export`.
 
-use super::Failure;
-use super::args::{ExportArguments, Format};
-use super::progress::Progress;
-use super::setup::{Setup, make_folder, write_file};
-use super::terminal::print;
-use super::watch::Watch;
+use crate::cli::args::{ExportArguments, Format};
+use crate::cli::failure::Failure;
+use crate::cli::run::progress::Progress;
+use crate::cli::run::setup::{Setup, make_folder, write_file};
+use crate::cli::run::watch::Watch;
+use crate::cli::terminal::print;
 use crate::qp::{QpPart, contact_qp, write_matrix_market, write_npz, write_qps};
 
-pub(super) fn run(arguments: &ExportArguments, watch: &Watch) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &ExportArguments, watch: &Watch) -> Result<(), Failure> {
     let progress = Progress::new(arguments.case.quiet);
     let setup = Setup::new(&arguments.case, &progress)?;
     let (d, _) = setup.discretize(&progress)?;

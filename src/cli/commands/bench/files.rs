@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use crate::cli::Failure;
-use crate::cli::setup::write_file;
+use crate::cli::failure::Failure;
+use crate::cli::run::setup::write_file;
 use crate::pictures::{Times, TimesPicture, render_times};
 use crate::study::comparison::{Curve, ORIGIN, Row, curves, markdown};
 

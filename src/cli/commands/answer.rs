@@ -4,25 +4,25 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 
-use super::Failure;
-use super::setup::{Setup, make_folder, write_file};
-use super::watch::Watch;
 use crate::action::{ContactSolution, Rejected, certify};
+use crate::cli::failure::Failure;
+use crate::cli::run::setup::{Setup, make_folder, write_file};
+use crate::cli::run::watch::Watch;
 use crate::discretization::Discretization;
 use crate::output::{Seconds, Summary};
 use crate::qp::{Status, read_answer};
 use crate::solver::{Candidate, Statistics};
 
 /// What stands for the backend, whose name nobody has told us.
-pub(super) const NAME: &str = "answer";
+pub(crate) const NAME: &str = "answer";
 
 /// What helps an answer that does not certify.
-pub(super) const REMEDY: &str = "; have it solved more accurately, or allow more with --tolerance";
+pub(crate) const REMEDY: &str = "; have it solved more accurately, or allow more with --tolerance";
 
 const SUMMARY: &str = "summary.json";
 
 /// Reads an answer and has it certified; the verdict goes also into the folder `out`, if one is named.
-pub(super) fn judge(
+pub(crate) fn judge(
     setup: &Setup,
     d: &Discretization,
     file: &Path,

@@ -9,14 +9,14 @@ use crate::study::StudyError;
 
 /// Runs since a moment, to a limit if there is one.
 #[derive(Clone, Copy)]
-pub(super) struct Clock {
+pub(crate) struct Clock {
     start: Instant,
     limit: Option<f64>,
 }
 
 impl Clock {
     /// Starts now; `limit` is in seconds.
-    pub(super) fn new(limit: Option<f64>) -> Self {
+    pub(crate) fn new(limit: Option<f64>) -> Self {
         Self { start: Instant::now(), limit }
     }
 
@@ -26,7 +26,7 @@ impl Clock {
     }
 
     /// Has the run ended when its time is over, whatever it does then.
-    pub(super) fn watch(&self, watch: &Watch, name: &str) {
+    pub(crate) fn watch(&self, watch: &Watch, name: &str) {
         if let Some(left) = self.left() {
             let name = name.to_owned();
             watch.limit(left.max(0.0), move || too_late(&name));
@@ -34,19 +34,19 @@ impl Clock {
     }
 
     /// Whether something that takes so many seconds ends in time.
-    pub(super) fn allows(&self, seconds: f64) -> bool {
+    pub(crate) fn allows(&self, seconds: f64) -> bool {
         self.left().is_none_or(|left| seconds <= left)
     }
 
     /// What a solver may take that has a limit of its own, or none.
-    pub(super) fn of_solver(&self, own: Option<f64>) -> Option<f64> {
+    pub(crate) fn of_solver(&self, own: Option<f64>) -> Option<f64> {
         // To a solver, a limit that is over is none.
         let left = self.left().map(|left| left.max(f64::MIN_POSITIVE));
         [own, left].into_iter().flatten().reduce(f64::min)
     }
 
     /// Whether a level has failed because the run's time was over.
-    pub(super) fn has_stopped(&self, error: &StudyError) -> bool {
+    pub(crate) fn has_stopped(&self, error: &StudyError) -> bool {
         matches!(error, StudyError::Rejected { rejected, .. } if rejected.statistics.status == Status::TimeLimit)
             && !self.allows(0.0)
     }

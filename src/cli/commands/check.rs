@@ -1,13 +1,15 @@
 //! `membranes check`: every residual, all backends, side by side, or of an answer from elsewhere.
 
-use super::args::CheckArguments;
-use super::case_file::BackendName;
-use super::progress::Progress;
-use super::setup::{Setup, options, solver};
-use super::terminal::{fixed, grouped, print};
-use super::watch::Watch;
-use super::{Failure, SolverSettings, answer};
+use super::answer;
 use crate::action::{ContactSolution, Rejected, Residuals, certify};
+use crate::cli::args::CheckArguments;
+use crate::cli::case::BackendName;
+use crate::cli::case::SolverSettings;
+use crate::cli::failure::Failure;
+use crate::cli::run::progress::Progress;
+use crate::cli::run::setup::{Setup, options, solver};
+use crate::cli::run::watch::Watch;
+use crate::cli::terminal::{fixed, grouped, print};
 use crate::discretization::Discretization;
 use crate::fem::element_loads;
 use crate::flux::{FluxDefects, Reconstruction, Reconstructor};
@@ -26,7 +28,7 @@ struct Column {
     result: Result<ContactSolution, Box<Rejected>>,
 }
 
-pub(super) fn run(arguments: &CheckArguments, watch: &Watch) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &CheckArguments, watch: &Watch) -> Result<(), Failure> {
     let progress = Progress::new(arguments.case.quiet);
     let mut setup = Setup::new(&arguments.case, &progress)?;
     if let Some(tolerance) = arguments.tolerance {
