@@ -18,6 +18,7 @@ mod kkt;
 #[cfg(feature = "osqp")]
 mod osqp;
 mod problem;
+mod time_limit;
 
 pub use self::clarabel::Clarabel;
 #[cfg(feature = "osqp")]
@@ -28,3 +29,4 @@ pub use contact::contact_qp;
 pub use export::{QpPart, write_matrix_market, write_npz, write_qps};
 pub use kkt::KktResiduals;
 pub use problem::{QpError, QpProblem};
+pub use time_limit::{TimeLimit, TimeLimitError};

@@ -5,13 +5,11 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use super::case::BackendName;
+use crate::qp::TimeLimit;
 use crate::study::Tolerance;
 
 /// Where results go when no folder is named: a folder of this one, called like the case file.
 const OUTPUT: &str = "out";
-
-/// Nobody waits longer for a solve, seconds: a year. Far larger numbers are no durations.
-const LONGEST: f64 = 365.0 * 86400.0;
 
 #[derive(Debug, Parser)]
 #[command(
@@ -57,12 +55,11 @@ pub(crate) struct SolveArguments {
     /// Solver: auto, multigrid, active-set, clarabel, osqp
     #[arg(long, value_name = "NAME")]
     pub(crate) backend: Option<BackendName>,
-    /// Folder for the results [default: out/CASE]
-    #[arg(long, value_name = "DIR")]
-    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) output: OutputArguments,
     /// Most seconds the solver may take
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
-    pub(crate) time_limit: Option<f64>,
+    pub(crate) time_limit: Option<TimeLimit>,
     /// Largest relative residual, or auto
     #[arg(long, value_name = "T", value_parser = tolerance_or_auto, allow_negative_numbers = true)]
     pub(crate) tolerance: Option<Tolerance>,
@@ -84,6 +81,9 @@ pub(crate) struct CheckArguments {
     /// Folder for the summary.json of the answer
     #[arg(long, value_name = "DIR", requires = "answer")]
     pub(crate) out: Option<PathBuf>,
+    /// Replace results of another case
+    #[arg(long, requires = "out")]
+    pub(crate) overwrite: bool,
     /// Largest relative residual, not the case file's
     #[arg(long, value_name = "T", value_parser = tolerance, allow_negative_numbers = true)]
     pub(crate) tolerance: Option<f64>,
@@ -94,17 +94,16 @@ pub(crate) struct ConvergeArguments {
     #[command(flatten)]
     pub(crate) case: CaseArguments,
     /// Meshes, each refined once more
-    #[arg(long, value_name = "N", default_value_t = 5)]
+    #[arg(long, value_name = "N", default_value = "5", value_parser = at_least(1), allow_negative_numbers = true)]
     pub(crate) levels: usize,
     /// Most seconds of this run
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
-    pub(crate) time_limit: Option<f64>,
+    pub(crate) time_limit: Option<TimeLimit>,
     /// Solver: auto, multigrid, active-set, clarabel, osqp
     #[arg(long, value_name = "NAME")]
     pub(crate) backend: Option<BackendName>,
-    /// Folder, whose levels are kept [default: out/CASE]
-    #[arg(long, value_name = "DIR")]
-    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) output: OutputArguments,
 }
 
 #[derive(Debug, Args)]
@@ -119,13 +118,12 @@ pub(crate) struct AdaptArguments {
     pub(crate) max_vertices: usize,
     /// Most seconds of this run
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
-    pub(crate) time_limit: Option<f64>,
+    pub(crate) time_limit: Option<TimeLimit>,
     /// Solver: auto, multigrid, active-set, clarabel, osqp
     #[arg(long, value_name = "NAME")]
     pub(crate) backend: Option<BackendName>,
-    /// Folder, whose levels are kept [default: out/CASE]
-    #[arg(long, value_name = "DIR")]
-    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) output: OutputArguments,
 }
 
 #[derive(Debug, Args)]
@@ -144,7 +142,7 @@ pub(crate) struct BenchArguments {
     pub(crate) solvers: Vec<BackendName>,
     /// Seconds a solve may take
     #[arg(long, value_name = "S", default_value = "60", value_parser = seconds, allow_negative_numbers = true)]
-    pub(crate) time_limit: f64,
+    pub(crate) time_limit: TimeLimit,
     /// Largest relative residual, not the case file's
     #[arg(long, value_name = "T", value_parser = tolerance, allow_negative_numbers = true)]
     pub(crate) tolerance: Option<f64>,
@@ -154,9 +152,8 @@ pub(crate) struct BenchArguments {
     /// Measure nothing, show the rows of --merge
     #[arg(long, requires = "merge")]
     pub(crate) no_run: bool,
-    /// Folder for results [default: out/CASE, out/bench]
-    #[arg(long, value_name = "DIR")]
-    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) output: OutputArguments,
     /// No output on the terminal but errors
     #[arg(long, short)]
     pub(crate) quiet: bool,
@@ -169,9 +166,8 @@ pub(crate) struct ExportArguments {
     /// File format
     #[arg(long, value_enum)]
     pub(crate) format: Format,
-    /// Folder for the files [default: out/CASE]
-    #[arg(long, value_name = "DIR")]
-    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) output: OutputArguments,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -192,6 +188,24 @@ pub(crate) struct CasesArguments {
 }
 
 #[derive(Debug, Args)]
+pub(crate) struct OutputArguments {
+    /// Folder for the results [default: out/CASE]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Replace results of another case or settings
+    #[arg(long)]
+    pub(crate) overwrite: bool,
+}
+
+impl OutputArguments {
+    /// The folder: the one named, else `out/` and the name of `case` without its ending.
+    pub(crate) fn folder(&self, case: &Path) -> PathBuf {
+        let stem = case.file_stem().unwrap_or(case.as_os_str());
+        self.out.clone().unwrap_or_else(|| PathBuf::from(OUTPUT).join(stem))
+    }
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct CaseArguments {
     /// The case file (TOML)
     #[arg(value_name = "CASE.toml")]
@@ -205,19 +219,6 @@ pub(crate) struct CaseArguments {
     /// No output on the terminal but errors
     #[arg(long, short)]
     pub(crate) quiet: bool,
-}
-
-impl CaseArguments {
-    /// The folder for results: the one named, else `out/` and the name of the case file without its ending.
-    pub(crate) fn output_folder(&self, named: Option<&PathBuf>) -> PathBuf {
-        output_folder(&self.path, named)
-    }
-}
-
-/// The folder for results: the one named, else `out/` and the name of `case` without its ending.
-pub(crate) fn output_folder(case: &Path, named: Option<&PathBuf>) -> PathBuf {
-    let stem = case.file_stem().unwrap_or(case.as_os_str());
-    named.cloned().unwrap_or_else(|| PathBuf::from(OUTPUT).join(stem))
 }
 
 fn tolerance_or_auto(text: &str) -> Result<Tolerance, String> {
@@ -243,9 +244,9 @@ fn at_least(least: usize) -> impl Fn(&str) -> Result<usize, String> + Clone + Se
     }
 }
 
-fn seconds(text: &str) -> Result<f64, String> {
-    let value = text.parse().ok().filter(|&value: &f64| value > 0.0 && value <= LONGEST);
-    value.ok_or_else(|| format!("choose seconds above 0, at most {LONGEST:.0}"))
+fn seconds(text: &str) -> Result<TimeLimit, String> {
+    let seconds: f64 = text.parse().map_err(|_| "choose seconds above 0, such as 60")?;
+    TimeLimit::from_seconds(seconds).map_err(|error| error.to_string())
 }
 
 fn positive(text: &str) -> Result<f64, String> {

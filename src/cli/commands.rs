@@ -7,6 +7,7 @@ mod cases;
 mod check;
 mod converge;
 mod export;
+mod solution;
 mod solve;
 
 use super::args::Command;

@@ -64,6 +64,8 @@ pub struct Summary {
     pub residuals: Option<ResidualSummary>,
     /// The largest of them beyond the rounding of the terms that cancel there: what is held against the tolerance.
     pub residual_beyond_rounding: Option<f64>,
+    /// Files that were left out, because the time was over.
+    pub left_out: Vec<&'static str>,
     /// Where the time went.
     pub seconds: Seconds,
 }
@@ -155,6 +157,7 @@ impl Summary {
             energy_norm: bound.map(|bound| bound.energy_norm),
             residuals: residuals.map(ResidualSummary::from),
             residual_beyond_rounding: residuals.map(Residuals::beyond_rounding),
+            left_out: Vec::new(),
             seconds,
         }
     }

@@ -47,11 +47,11 @@ impl ContactSolver for Auto {
 fn multigrid_or_active_set(d: &Discretization, options: &SolverOptions) -> Result<Candidate, SolverError> {
     let start = Instant::now();
     let candidate = Multigrid.solve(d, options)?;
-    let left = options.time_limit.map(|seconds| seconds - start.elapsed().as_secs_f64());
-    if candidate.statistics.status != Status::Stalled || left.is_some_and(|left| left <= 0.0) {
+    let left = options.time_limit.map(|limit| limit.left_since(start));
+    if candidate.statistics.status != Status::Stalled || left == Some(None) {
         return Ok(candidate);
     }
-    ActiveSet.solve(d, &SolverOptions { time_limit: left, ..options.clone() })
+    ActiveSet.solve(d, &SolverOptions { time_limit: left.flatten(), ..options.clone() })
 }
 
 #[cfg(test)]

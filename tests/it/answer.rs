@@ -95,7 +95,7 @@ fn a_good_answer_is_certified_and_shown_like_a_backend() {
     assert_eq!((&summary["backend"], &summary["status"]), (&"answer".into(), &"unknown".into()));
     assert_eq!((&summary["certified"], &summary["tolerance"]), (&true.into(), &1e-7.into()));
     assert!(summary["contact_vertices"].as_u64().is_some_and(|count| count > 0));
-    assert_eq!(files(&folder.path().join("verdict")), ["summary.json"]);
+    assert_eq!(files(&folder.path().join("verdict")), ["membranes.json", "summary.json"]);
 
     let quiet = judge(folder.path(), &format!("--tolerance {REACHED} --quiet"));
     assert_eq!((quiet.code, quiet.stdout.as_str()), (Some(0), ""));

@@ -14,6 +14,8 @@ mod bad_input;
 mod bench;
 mod custom_backend;
 mod exact;
+#[cfg(feature = "cli")]
+mod folders;
 mod hostile_numbers;
 mod invariance;
 mod layers;

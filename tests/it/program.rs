@@ -19,8 +19,8 @@ const INTERIOR: u64 = 3 * 3;
 /// `J` at `u1 = 0.1 + 0.05 x`, `u2 = 0`, which is admissible: the minimum lies below.
 const UNLOADED_ENERGY: f64 = 0.5 * 0.05 * 0.05 + 2.0 * 0.125;
 
-/// What `solve` writes.
-const RESULTS: [&str; 3] = ["membranes.png", "solution.vtu", "summary.json"];
+/// What `solve` writes: the record of the case, and the results.
+const RESULTS: [&str; 4] = ["membranes.json", "membranes.png", "solution.vtu", "summary.json"];
 
 /// Two membranes on the unit square, partly in contact.
 const CASE: &str = r#"
@@ -263,7 +263,11 @@ fn what_is_not_certified_leaves_no_solution() {
     for word in ["error: plates.toml: ", "does not certify", "iteration_limit", "allow more iterations"] {
         assert!(run.stderr.contains(word), "{word}: {}", run.stderr);
     }
-    assert_eq!(files(&results), ["notes.txt", "summary.json"], "the earlier solution is not this run's");
+    assert_eq!(
+        files(&results),
+        ["membranes.json", "notes.txt", "summary.json"],
+        "the earlier solution is not this run's"
+    );
     let summary = summary(&results);
     assert_eq!(summary["certified"], false);
     assert_eq!(summary["status"], "iteration_limit");
@@ -303,7 +307,8 @@ fn export_writes_each_format() {
     for (format, names, magic) in formats {
         let told = run(folder.path(), &format!("export plates.toml --format {format} --out {format}"));
         let told = told.success();
-        assert_eq!(files(&folder.path().join(format)), names);
+        let written: Vec<String> = files(&folder.path().join(format));
+        assert_eq!(written, [&["membranes.json"], names].concat());
         for name in names {
             assert!(told.contains(&format!("{format}/{name}\n")), "{told}");
             assert!(fs::read(folder.path().join(format).join(name)).unwrap().starts_with(magic), "{name}");
@@ -360,11 +365,15 @@ fn converge_goes_on_from_the_levels_that_are_there() {
     assert_eq!((first.len(), more.len()), (2, 3));
     // The seconds in the rows tell that the first levels were kept, not computed again.
     assert_eq!(more[..2], first);
-    let expected = ["converge.toml", "convergence.md", "convergence.png", "summary.csv"];
+    let expected = ["convergence.md", "convergence.png", "membranes.json", "summary.csv"];
     assert_eq!(files(&folder.path().join("results")), expected);
 
     fs::write(folder.path().join("plates.toml"), KNOWN.replace("cells = 4", "cells = 5")).expect("writable");
-    let other = converge(2);
+    let refused = run(folder.path(), "converge plates.toml --levels 2 --out results");
+    assert_eq!(refused.code, Some(2), "another case does not take their place");
+    let told = run(folder.path(), "converge plates.toml --levels 2 --out results --overwrite -q");
+    told.success();
+    let other = levels(&fs::read_to_string(folder.path().join("results/summary.csv")).expect("it is there"));
     assert_eq!(other.len(), 2, "another case starts anew");
     assert_ne!(other[0], first[0]);
 }

@@ -6,6 +6,7 @@ use toml::Value;
 
 use super::section::{Section, as_number};
 use crate::cli::failure::Failure;
+use crate::qp::TimeLimit;
 use crate::study::Tolerance;
 use crate::text::{Number, excerpt};
 
@@ -20,8 +21,8 @@ pub struct SolverSettings {
     pub polish: bool,
     /// Limit of iterations.
     pub max_iterations: Option<usize>,
-    /// Limit of time, seconds.
-    pub time_limit: Option<f64>,
+    /// Limit of time of each solve.
+    pub time_limit: Option<TimeLimit>,
 }
 
 /// A solver, by name.
@@ -97,14 +98,8 @@ pub(super) fn solver(top: &mut Section) -> Result<SolverSettings, Failure> {
         None => Tolerance::Fixed(1e-8),
         Some(value) => tolerance(&value).map_err(|problem| section.error("tolerance", problem))?,
     };
-    let time_limit = section.number("time_limit")?;
-    if let Some(seconds) = time_limit
-        && !(seconds > 0.0 && seconds.is_finite())
-    {
-        return Err(
-            section.error("time_limit", format!("= {seconds} is out of range: choose seconds above 0"))
-        );
-    }
+    let time_limit = section.number("time_limit")?.map(TimeLimit::from_seconds).transpose();
+    let time_limit = time_limit.map_err(|error| section.error("time_limit", format!("= {error}")))?;
     let settings = SolverSettings {
         backend,
         tolerance,

@@ -1,6 +1,6 @@
 //! `membranes check`: every residual, all backends, side by side, or of an answer from elsewhere.
 
-use super::answer;
+use super::answer::{self, Verdict};
 use crate::action::{ContactSolution, Rejected, Residuals, certify};
 use crate::cli::args::CheckArguments;
 use crate::cli::case::BackendName;
@@ -44,9 +44,9 @@ pub(crate) fn run(arguments: &CheckArguments, watch: &Watch) -> Result<(), Failu
         None => (columns_of_backends(&setup, &d, &progress)?, ""),
         Some(file) => {
             progress.stage("judging the answer");
-            let result = answer::judge(&setup, &d, file, arguments.out.as_deref(), seconds, watch)?;
+            let Verdict { result, remedy } = answer::judge(&setup, &d, file, arguments, seconds, watch)?;
             let heading = [answer::NAME.into(), AS_IT_IS.into()];
-            (vec![Column { heading, must_certify: true, result }], answer::REMEDY)
+            (vec![Column { heading, must_certify: true, result }], remedy)
         }
     };
     drop(progress);

@@ -2,8 +2,10 @@
 
 use crate::cli::args::{ExportArguments, Format};
 use crate::cli::failure::Failure;
+use crate::cli::run::files::{MTX, NPZ, Part, QPS};
+use crate::cli::run::folder::{Claim, Folder};
 use crate::cli::run::progress::Progress;
-use crate::cli::run::setup::{Setup, make_folder, write_file};
+use crate::cli::run::setup::Setup;
 use crate::cli::run::watch::Watch;
 use crate::cli::terminal::print;
 use crate::qp::{QpPart, contact_qp, write_matrix_market, write_npz, write_qps};
@@ -13,22 +15,26 @@ pub(crate) fn run(arguments: &ExportArguments, watch: &Watch) -> Result<(), Fail
     let setup = Setup::new(&arguments.case, &progress)?;
     let (d, _) = setup.discretize(&progress)?;
     let qp = contact_qp(&d);
-    let folder = arguments.case.output_folder(arguments.out.as_ref());
-    make_folder(&folder, watch, "files that are there are whole")?;
+    let claim = Claim {
+        case: &setup.id,
+        part: Part::Export,
+        settings: format!("the mesh refined {} times", setup.refinements()),
+        overwrite: arguments.output.overwrite,
+        says: "files that are there are whole",
+    };
+    let folder = Folder::claim(&arguments.output.folder(&arguments.case.path), &claim, watch)?;
     progress.stage("writing the quadratic program");
     let mut written = Vec::new();
-    let mut path = |name: String| {
-        let path = folder.join(name);
-        written.push(path.display().to_string());
-        path
+    let mut named = |name: &'static str| {
+        written.push(folder.path().join(name).display().to_string());
+        name
     };
     match arguments.format {
-        Format::Qps => write_file(&path("problem.qps".into()), |out| write_qps(&qp, out))?,
-        Format::Npz => write_file(&path("problem.npz".into()), |out| write_npz(&d, &qp, out))?,
+        Format::Qps => folder.write(named(QPS), |out| write_qps(&qp, out))?,
+        Format::Npz => folder.write(named(NPZ), |out| write_npz(&d, &qp, out))?,
         Format::Mtx => {
-            for part in QpPart::ALL {
-                let name = format!("problem_{}.mtx", part.letter());
-                write_file(&path(name), |out| write_matrix_market(&qp, part, out))?;
+            for (part, name) in QpPart::ALL.into_iter().zip(MTX) {
+                folder.write(named(name), |out| write_matrix_market(&qp, part, out))?;
             }
         }
     }

@@ -1,16 +1,13 @@
 //! The levels of a study in the folder for results: a run that is stopped goes on from them.
 
-use std::path::Path;
-
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::setup::write_file;
-use crate::cli::args::CaseArguments;
-use crate::cli::case::BackendName;
+use super::folder::Folder;
+use super::setup::Setup;
+use crate::cli::case::SolverSettings;
 use crate::cli::failure::Failure;
-use crate::output::remove;
-use crate::study::StudyError;
+use crate::study::{StudyError, Tolerance};
 
 const VERSION: &str = concat!("membranes ", env!("CARGO_PKG_VERSION"));
 
@@ -31,39 +28,27 @@ pub(crate) fn too_late(name: &str) -> Failure {
     ))
 }
 
-/// The levels of a study, a row of a table for each, and what they belong to: a run of another case file, solver or first mesh
-/// starts anew.
+/// The levels of a study, a row of a table for each, in a folder that belongs to it.
 pub(crate) struct Levels<'a> {
-    /// The folder.
-    pub(crate) folder: &'a Path,
+    pub(crate) folder: &'a Folder,
     /// The name of the table.
     pub(crate) table: &'static str,
-    /// The name of the file that says what the levels belong to.
-    pub(crate) origin: &'static str,
+    /// The picture of them, which goes when there are more.
+    pub(crate) picture: &'static str,
 }
 
 impl Levels<'_> {
-    /// The rows that an earlier run of the same origin has left; none when it was another one.
-    pub(crate) fn so_far<T: DeserializeOwned>(&self, origin: &str) -> Result<Vec<T>, Failure> {
-        let table = self.folder.join(self.table);
-        let known = std::fs::read_to_string(self.folder.join(self.origin));
-        if known.is_ok_and(|text| text == origin)
-            && let Ok(mut reader) = csv::Reader::from_path(&table)
-        {
-            let rows: Result<Vec<T>, _> = reader.deserialize().collect();
-            // A table that is not ours, or of another version, is made anew.
-            return Ok(rows.unwrap_or_default());
-        }
-        // Levels of another origin go first: a run that is stopped here must not find them under the new one.
-        remove(&table)
-            .map_err(|error| Failure::Input(format!("{}: cannot remove: {error}", table.display())))?;
-        write_file(&self.folder.join(self.origin), |out| out.write_all(origin.as_bytes()))?;
-        Ok(Vec::new())
+    /// The rows that an earlier run has left. A table that cannot be read is made anew.
+    pub(crate) fn so_far<T: DeserializeOwned>(&self) -> Vec<T> {
+        let reader = csv::Reader::from_path(self.folder.path().join(self.table));
+        let rows = reader.map(|mut reader| reader.deserialize().collect::<Result<Vec<T>, _>>());
+        rows.and_then(|rows| rows).unwrap_or_default()
     }
 
     /// Writes all rows anew.
     pub(crate) fn write<T: Serialize>(&self, rows: &[T]) -> Result<(), Failure> {
-        write_file(&self.folder.join(self.table), |out| {
+        self.folder.remove(self.picture)?;
+        self.folder.write(self.table, |out| {
             let mut writer = csv::Writer::from_writer(out);
             rows.iter().try_for_each(|row| writer.serialize(row))?;
             writer.flush()
@@ -71,10 +56,16 @@ impl Levels<'_> {
     }
 }
 
-/// What the levels of a run belong to.
-pub(crate) fn origin(case: &CaseArguments, backend: BackendName, text: &str) -> String {
-    let backend = backend.as_str();
-    format!("# {VERSION}, solved by {backend}, refined {} times first\n{text}", case.refine)
+/// What the levels of a run depend on beside the case.
+pub(crate) fn settings(setup: &Setup) -> String {
+    let SolverSettings { backend, tolerance, polish, .. } = &setup.case.solver;
+    let tolerance = match tolerance {
+        Tolerance::Auto => "auto".into(),
+        Tolerance::Fixed(tolerance) => format!("{tolerance:e}"),
+    };
+    let polish = if *polish { "" } else { ", no polish" };
+    let (backend, refinements) = (backend.as_str(), setup.refinements());
+    format!("{VERSION}, {backend}, tolerance {tolerance}{polish}, first refined {refinements} times")
 }
 
 /// Why a study of the case file `name` fails.

@@ -5,24 +5,23 @@ use std::time::Instant;
 
 use super::memory::Memory;
 use super::progress::Progress;
-use super::watch::Watch;
 use crate::cli::args::CaseArguments;
-use crate::cli::case::SolverSettings;
-use crate::cli::case::{BackendName, CaseFile, MeshSource};
+use crate::cli::case::{BackendName, CaseFile, CaseId, MeshSource, SolverSettings};
 use crate::cli::failure::Failure;
 use crate::cli::terminal::grouped;
 use crate::discretization::Discretization;
 use crate::mesh::{MAX_VERTICES, Mesh, MeshFamily, ReadError, estimated_vertices, generate};
-use crate::output::{FileSet, Seconds, WriteSeek, prepare_folder, write_atomically};
+use crate::output::Seconds;
 use crate::qp::Clarabel;
 use crate::solver::{ActiveSet, Auto, ContactSolver, Multigrid, QpSolver, SolverOptions};
 
 /// The case and its meshes.
 pub(crate) struct Setup {
     pub(crate) name: String,
-    /// The text of the case file.
-    pub(crate) text: String,
+    pub(crate) id: CaseId,
     pub(crate) case: CaseFile,
+    /// Refinements beside those of the case file.
+    further: usize,
     pub(crate) family: MeshFamily,
     pub(crate) seconds: Seconds,
     pub(crate) memory: Memory,
@@ -38,8 +37,15 @@ impl Setup {
         let start = Instant::now();
         let memory = Memory::new(arguments.memory_limit);
         let family = make_mesh(&name, &case, arguments.refine as usize, memory)?;
+        let id = CaseId::new(&name, &text, &case.mesh);
         let seconds = Seconds { mesh: start.elapsed().as_secs_f64(), ..Seconds::default() };
-        Ok(Self { name, text, case, family, seconds, memory })
+        let further = arguments.refine as usize;
+        Ok(Self { name, id, case, further, family, seconds, memory })
+    }
+
+    /// How often the mesh was refined, by the case file and further.
+    pub(crate) fn refinements(&self) -> usize {
+        self.case.refine + self.further
     }
 
     /// Refuses a solver that needs more memory on this mesh than there is.
@@ -93,6 +99,15 @@ fn make_mesh(name: &str, case: &CaseFile, further: usize, memory: Memory) -> Res
     Ok(family)
 }
 
+/// What to do when the time is over before a mesh is there.
+pub(crate) fn too_early(case: &Path) -> impl Fn() -> Failure + Send + Sync + 'static {
+    let name = case.display().to_string();
+    move || {
+        let why = "the time was over before the first solve, and nothing is written";
+        Failure::NotCertified(format!("{name}: {why}; allow more, or take a coarser mesh (--time-limit)"))
+    }
+}
+
 /// The vertices after so many refinements; refuses such that lead beyond what can be stored.
 pub(crate) fn check_refinements(name: &str, vertices: f64, refinements: usize) -> Result<f64, Failure> {
     // Each refinement makes four times as many.
@@ -138,50 +153,4 @@ pub(crate) fn options(settings: &SolverSettings) -> SolverOptions {
         polish: settings.polish,
         warm_start: None,
     }
-}
-
-/// Makes the folder for results: that nothing can be written there is said before anything is computed. `says` is what an
-/// interrupted run has to say of it.
-pub(crate) fn make_folder(folder: &Path, watch: &Watch, says: &'static str) -> Result<(), Failure> {
-    prepare_folder(folder).map_err(|error| cannot_write(folder, &error))?;
-    watch.folder(folder, says);
-    Ok(())
-}
-
-/// The files of a result, which appear together, the summary last.
-pub(crate) struct Results<'f> {
-    folder: &'f Path,
-    files: FileSet,
-}
-
-impl<'f> Results<'f> {
-    pub(crate) fn new(folder: &'f Path) -> Self {
-        Self { folder, files: FileSet::new(folder) }
-    }
-
-    pub(crate) fn write(
-        &mut self,
-        name: &str,
-        write: impl FnOnce(&mut (dyn WriteSeek + '_)) -> std::io::Result<()>,
-    ) -> Result<(), Failure> {
-        self.files
-            .write(Path::new(name), write)
-            .map_err(|error| cannot_write(&self.folder.join(name), &error))
-    }
-
-    pub(crate) fn publish(self) -> Result<(), Failure> {
-        self.files.publish().map_err(|error| cannot_write(self.folder, &error))
-    }
-}
-
-/// Writes a result, whole or not at all.
-pub(crate) fn write_file(
-    path: &Path,
-    write: impl FnOnce(&mut (dyn WriteSeek + '_)) -> std::io::Result<()>,
-) -> Result<(), Failure> {
-    write_atomically(path, write).map_err(|error| cannot_write(path, &error))
-}
-
-fn cannot_write(path: &Path, error: &std::io::Error) -> Failure {
-    Failure::Input(format!("{}: cannot write: {error}; name another folder with --out", path.display()))
 }

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use super::files::{PICTURE, ROWS, TABLE, solver_name};
+use super::files::solver_name;
+use crate::cli::run::files::{ROWS, ROWS_TABLE, TIMES};
 use crate::cli::terminal::grouped;
 use crate::study::comparison::{Row, curves, slope};
 
@@ -37,7 +38,7 @@ pub(super) fn table(title: &str, rows: &[Row], folder: &Path) -> String {
         let exponent = slope(rows, curve).map_or_else(|| "-".into(), |slope| format!("{slope:.2}"));
         text += &format!("  {:NAME$} {exponent:>9}{problem}\n", cut(&solver_name(&curve), NAME));
     }
-    text + &format!("  files: {}/{{{ROWS}, {TABLE}, {PICTURE}}}\n", folder.display())
+    text + &format!("  files: {}/{{{ROWS}, {ROWS_TABLE}, {TIMES}}}\n", folder.display())
 }
 
 /// What tells meshes apart; other programs need not know `n`.
