@@ -179,6 +179,10 @@ const BAD_SOLVER: &[Fault] = &[
     ("polish = true", "polish = \"yes\"", &["`solver.polish` must be true or false"]),
     ("polish = true", "max_iterations = 0", &["`solver.max_iterations`", "at least 1"]),
     ("polish = true", "time_limit = 0", &["`solver.time_limit` = 0", "above 0"]),
+    ("polish = true", "time_limit = -1", &["`solver.time_limit` = -1", "above 0"]),
+    ("polish = true", "time_limit = nan", &["`solver.time_limit` = NaN", "above 0"]),
+    ("polish = true", "time_limit = inf", &["`solver.time_limit` = inf", "leave it out for no limit"]),
+    ("polish = true", "time_limit = 1e300", &["`solver.time_limit` = 1e300", "leave it out for no limit"]),
 ];
 
 const BAD_MESH: &[Fault] = &[
@@ -306,6 +310,35 @@ const BAD_ARGUMENTS: &[(&str, &[&str], &str)] = &[
         &["file/new", "another folder with --out"],
         "solve case.toml --out new",
     ),
+    (
+        "solve case.toml --time-limit 0",
+        &["--time-limit", "0 is out of range"],
+        "solve case.toml --time-limit 60",
+    ),
+    (
+        "solve case.toml --time-limit nan",
+        &["--time-limit", "NaN is out"],
+        "solve case.toml --time-limit 1e19",
+    ),
+    (
+        "solve case.toml --time-limit 1e300",
+        &["--time-limit", "1e300 is out"],
+        "solve case.toml --time-limit 60",
+    ),
+    (
+        "solve case.toml --time-limit soon",
+        &["--time-limit", "choose seconds"],
+        "solve case.toml --time-limit 60",
+    ),
+    ("converge disk.toml --levels 0", &["--levels", "at least 1"], "converge disk.toml --levels 1"),
+    ("converge disk.toml --levels 30", &["29 refinements", "refine less"], "converge disk.toml --levels 2"),
+    ("converge disk.toml --levels -1", &["--levels", "at least 1"], "converge disk.toml --levels 1"),
+    ("bench disk.toml --levels 0", &["--levels", "at least 1"], "bench disk.toml --levels 1"),
+    (
+        "adapt disk.toml --max-vertices 3",
+        &["first mesh has 41 vertices", "--max-vertices 3"],
+        "adapt disk.toml --max-vertices 100 --tolerance 0.9",
+    ),
     ("cases stirp", &["`stirp`", "nearest is `strip`"], "cases strip"),
 ];
 
@@ -387,6 +420,7 @@ fn bad_arguments_are_refused_in_one_line_and_mended_ones_accepted() {
     let folder = folder_with(SQUARE, MESH);
     let write = |name: &str, bytes: &[u8]| fs::write(folder.path().join(name), bytes).unwrap();
     write("file", b"not a folder");
+    write("disk.toml", DISK.as_bytes());
     write("latin1.toml", b"title = \"Stra\xdfe\"");
     let deep = format!("{}x{}", "(1 + ".repeat(1000), ")".repeat(1000));
     write("deep.toml", SQUARE.replace("-15.0", &format!("{deep:?}")).as_bytes());

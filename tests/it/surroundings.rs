@@ -224,7 +224,10 @@ fn a_time_limit_holds_whatever_the_solver_does() {
     }
     for (solver, limit) in solvers {
         let begin = Instant::now();
-        let stopped = run(folder.path(), &format!("solve case.toml --backend {solver} --time-limit {limit}"));
+        // In the case file it is the limit of the solve alone.
+        let limited = format!("{}[solver]\ntime_limit = {limit}\n", square(512));
+        fs::write(folder.path().join("case.toml"), limited).unwrap();
+        let stopped = run(folder.path(), &format!("solve case.toml --backend {solver}"));
         let seconds = begin.elapsed().as_secs_f64();
         assert_eq!(stopped.code, Some(1), "{solver}: {}", stopped.stderr);
         for word in ["does not certify", "time_limit", "more"] {
@@ -245,6 +248,24 @@ fn a_time_limit_holds_whatever_the_solver_does() {
         let before = ["mesh", "assembly"].map(|name| summary["seconds"][name].as_f64().expect(name));
         assert!(seconds - before[0] - before[1] < 1.1 * limit + BUSY.as_secs_f64(), "{solver}: {seconds} s");
     }
+}
+
+#[test]
+fn a_time_limit_of_the_command_covers_what_comes_before_the_solve() {
+    let folder = folder_with(&square(64));
+    for command in ["solve", "adapt"] {
+        let stopped = run(folder.path(), &format!("{command} case.toml --time-limit 1e-6"));
+        assert_eq!((stopped.code, stopped.stderr.lines().count()), (Some(1), 1), "{}", stopped.stderr);
+        assert!(
+            stopped.stderr.contains("before the first solve, and nothing is written"),
+            "{}",
+            stopped.stderr
+        );
+        assert_eq!(files(folder.path()), ["case.toml"]);
+    }
+    run(folder.path(), "solve case.toml -q --time-limit 1e19").success();
+    let summary: Value = serde_json::from_slice(&results(folder.path())["summary.json"]).expect("JSON");
+    assert_eq!(summary["left_out"], serde_json::json!([]));
 }
 
 #[test]
@@ -322,8 +343,9 @@ fn a_full_disk_loses_nothing_that_was_there() {
         );
         let after = results(folder.path());
         let lost: Vec<_> = before.iter().filter(|(name, bytes)| after.get(*name) != Some(bytes)).collect();
-        // The picture of the levels goes when there are more.
-        assert!(lost.iter().all(|(name, _)| *name == "adapt.png"), "{arguments}: {:?}", after.keys());
+        // Levels are added to those that were there; the picture of them goes then.
+        let levels = |name: &str| name.starts_with("adapt.") || name == "checkpoint.npz";
+        assert!(lost.iter().all(|(name, _)| levels(name)), "{arguments}: {:?}", after.keys());
         assert!(after.keys().all(|name| !is_unfinished(name)), "{arguments}");
         assert_eq!(on_a_small_disk(folder.path(), 1 << 20, &finer).code, Some(0), "{arguments}");
     }
