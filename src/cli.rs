@@ -26,7 +26,7 @@ pub fn main() -> ExitCode {
     let result = match Arguments::try_parse() {
         Ok(arguments) => watched(move |watch| commands::run(&arguments.command, watch)),
         Err(error) if !error.use_stderr() => terminal::print(&error.to_string()),
-        Err(error) => Err(Failure::Input(args::one_line(&error))),
+        Err(error) => Err(Failure::Input(args::one_line(&error, std::env::args().nth(1).as_deref()))),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
 
 use super::case::BackendName;
 use crate::qp::TimeLimit;
@@ -10,6 +11,13 @@ use crate::study::Tolerance;
 
 /// Where results go when no folder is named: a folder of this one, called like the case file.
 const OUTPUT: &str = "out";
+
+/// What `--backend` may be in this build.
+const SOLVERS: &str = if cfg!(feature = "osqp") {
+    "Solver: auto, multigrid, active-set, clarabel, osqp"
+} else {
+    "Solver: auto, multigrid, active-set, clarabel"
+};
 
 #[derive(Debug, Parser)]
 #[command(
@@ -46,18 +54,25 @@ pub(crate) enum Command {
     Export(ExportArguments),
     /// List the built-in exact cases, or print one as a case file
     Cases(CasesArguments),
+    /// Print completions for a shell
+    Completions(CompletionsArguments),
+    /// Print the manual page, or write those of all commands
+    Man(ManArguments),
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = "\
+The time limit covers reading, meshing, assembly, solving and pictures. What is
+certified by then is written: pictures that would take longer are left out.
+time_limit in the case file is that of the solver alone.")]
 pub(crate) struct SolveArguments {
     #[command(flatten)]
     pub(crate) case: CaseArguments,
-    /// Solver: auto, multigrid, active-set, clarabel, osqp
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", help = SOLVERS)]
     pub(crate) backend: Option<BackendName>,
     #[command(flatten)]
     pub(crate) output: OutputArguments,
-    /// Most seconds the solver may take
+    /// Most seconds of this run; see below
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) time_limit: Option<TimeLimit>,
     /// Largest relative residual, or auto
@@ -99,8 +114,7 @@ pub(crate) struct ConvergeArguments {
     /// Most seconds of this run
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) time_limit: Option<TimeLimit>,
-    /// Solver: auto, multigrid, active-set, clarabel, osqp
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", help = SOLVERS)]
     pub(crate) backend: Option<BackendName>,
     #[command(flatten)]
     pub(crate) output: OutputArguments,
@@ -119,8 +133,7 @@ pub(crate) struct AdaptArguments {
     /// Most seconds of this run
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) time_limit: Option<TimeLimit>,
-    /// Solver: auto, multigrid, active-set, clarabel, osqp
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", help = SOLVERS)]
     pub(crate) backend: Option<BackendName>,
     #[command(flatten)]
     pub(crate) output: OutputArguments,
@@ -206,6 +219,24 @@ impl OutputArguments {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = "\
+  bash   membranes completions bash > ~/.local/share/bash-completion/completions/membranes
+  zsh    membranes completions zsh > _membranes      in a folder of $fpath
+  fish   membranes completions fish > ~/.config/fish/completions/membranes.fish")]
+pub(crate) struct CompletionsArguments {
+    /// The shell
+    #[arg(value_enum)]
+    pub(crate) shell: Shell,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ManArguments {
+    /// Write membranes.1, membranes-solve.1, ... into this folder
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct CaseArguments {
     /// The case file (TOML)
     #[arg(value_name = "CASE.toml")]
@@ -255,7 +286,8 @@ fn positive(text: &str) -> Result<f64, String> {
 }
 
 /// What clap has to say, without its paragraphs on usage and on arguments that begin with a hyphen.
-pub(crate) fn one_line(error: &clap::Error) -> String {
+/// `command` is the first argument, which may be a command: then its help says more.
+pub(crate) fn one_line(error: &clap::Error, command: Option<&str>) -> String {
     let text = error.to_string();
     let of_use = |paragraph: &&str| {
         let asides = ["Usage:", "For more information", "tip: to pass"];
@@ -264,5 +296,7 @@ pub(crate) fn one_line(error: &clap::Error) -> String {
     let words = |paragraph: &str| paragraph.split_whitespace().collect::<Vec<_>>().join(" ");
     let message = text.split("\n\n").filter(of_use).map(words).collect::<Vec<_>>().join("; ");
     let message = message.strip_prefix("error: ").unwrap_or(&message);
-    format!("{message}; see `membranes --help`")
+    let known = |name: &&str| Arguments::command().find_subcommand(name).is_some();
+    let command = command.filter(known).map_or_else(String::new, |name| format!("{name} "));
+    format!("{message}; see `membranes {command}--help`")
 }

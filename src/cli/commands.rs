@@ -7,6 +7,7 @@ mod cases;
 mod check;
 mod converge;
 mod export;
+mod shell;
 mod solution;
 mod solve;
 
@@ -24,5 +25,7 @@ pub(super) fn run(command: &Command, watch: &Watch) -> Result<(), Failure> {
         Command::Bench(arguments) => bench::run(arguments, watch),
         Command::Export(arguments) => export::run(arguments, watch),
         Command::Cases(arguments) => cases::run(arguments),
+        Command::Completions(arguments) => shell::completions(arguments),
+        Command::Man(arguments) => shell::man(arguments, watch),
     }
 }

@@ -124,11 +124,16 @@ const BAD_KEYS: &[Fault] = &[
     ("[mesh]", "[mehs]", &["`mehs`", "nearest is `mesh`"]),
     ("cells", "cels", &["`mesh.cels`", "nearest is `cells`"]),
     ("[solver]", "[slover]", &["`slover`", "nearest is `solver`"]),
+    ("height", "obstacle", &["`membranes.obstacle`", "known here are tension, load, height"]),
     ("polish", "polihs", &["`solver.polihs`", "nearest is `polish`"]),
     ("tension = [1.0, 3.0]", "", &["`membranes.tension` is missing", "add `tension"]),
     ("load = [-15.0, \"10*sin(pi*x)\"]", "", &["`membranes.load` is missing", "add `load"]),
     ("shape = \"square\"", "", &["there is no domain", "add a table [domain]"]),
-    ("shape = \"square\"", "shape = \"square\"\nradius = 1", &["`domain.radius`", "nearest is"]),
+    (
+        "shape = \"square\"",
+        "shape = \"square\"\nradius = 1",
+        &["`domain.radius`", "known here are mesh, shape, lower, side"],
+    ),
     ("title = \"two plates\"", "[parameters]\nq = 1", &["`parameters`", "add `case"]),
     ("title = \"two plates\"", "case = \"disk\"", &["`membranes` contradicts `case`", "remove one"]),
 ];
@@ -158,6 +163,8 @@ const BAD_MEMBRANES: &[Fault] = &[
     ("10*sin(pi*x)", "x**2", &["`**` at column 2", "write `^`"]),
     ("10*sin(pi*x)", "1,5", &["comma at column 2", "`.`"]),
     ("10*sin(pi*x)", "atan2(x)", &["`atan2`", "give it 2"]),
+    ("10*sin(pi*x)", "|x|", &["`|` at column 1", "`abs(...)`"]),
+    ("10*sin(pi*x)", "sgn(x)", &["unknown name `sgn`", "`if(a > 0, 1, if(a < 0, -1, 0))`"]),
     ("10*sin(pi*x)", "z", &["unknown name `z`", "`x` and `y`"]),
     ("10*sin(pi*x)", "1/(x - x)", &["f2", "inf at the point (", "finite"]),
     ("10*sin(pi*x)", "ln(x - 0.5)", &["f2", "NaN at the point (", "finite"]),
@@ -274,10 +281,14 @@ const BAD_MESH_FILE: &[Fault] = &[
 
 /// Arguments that are refused, what the message has to say, and the arguments with the remedy taken.
 const BAD_ARGUMENTS: &[(&str, &[&str], &str)] = &[
-    ("", &["requires a subcommand", "solve, check, converge, adapt, bench, export, cases"], "--help"),
+    (
+        "",
+        &["requires a subcommand", "solve, check, converge, adapt, bench, export, cases, completions, man"],
+        "--help",
+    ),
     ("frobnicate case.toml", &["'frobnicate'", "membranes --help"], "check case.toml"),
     ("sovle case.toml", &["'sovle'", "'solve'"], "solve case.toml"),
-    ("solve", &["<CASE.toml>", "not provided"], "solve case.toml"),
+    ("solve", &["<CASE.toml>", "not provided", "see `membranes solve --help`"], "solve case.toml"),
     ("check case.toml --quite", &["'--quite'", "'--quiet'"], "check case.toml --quiet"),
     ("check case.toml case.toml", &["unexpected argument 'case.toml'"], "check case.toml"),
     ("check cas.toml", &["cas.toml", "name an existing file", "membranes cases"], "check case.toml"),
@@ -294,7 +305,11 @@ const BAD_ARGUMENTS: &[(&str, &[&str], &str)] = &[
         &["file", "--out"],
         "export case.toml --format qps --out new",
     ),
-    ("solve case.toml --tolerance 1", &["'1'", "between 0 and 1"], "solve case.toml --tolerance 1e-6"),
+    (
+        "solve case.toml --tolerance 1",
+        &["'1'", "between 0 and 1", "membranes solve --help"],
+        "solve case.toml --tolerance 1e-6",
+    ),
     ("solve case.toml --tolerance -1", &["'-1'", "between 0 and 1"], "solve case.toml --tolerance 1e-6"),
     ("solve case.toml --tolerance nan", &["'nan'", "between 0 and 1"], "solve case.toml --tolerance 1e-6"),
     (
@@ -336,7 +351,7 @@ const BAD_ARGUMENTS: &[(&str, &[&str], &str)] = &[
     ("bench disk.toml --levels 0", &["--levels", "at least 1"], "bench disk.toml --levels 1"),
     (
         "adapt disk.toml --max-vertices 3",
-        &["first mesh has 41 vertices", "--max-vertices 3"],
+        &["first mesh has 61 vertices", "--max-vertices 3"],
         "adapt disk.toml --max-vertices 100 --tolerance 0.9",
     ),
     ("cases stirp", &["`stirp`", "nearest is `strip`"], "cases strip"),

@@ -112,7 +112,7 @@ pub fn lines_too_long(text: &str) -> Vec<&str> {
 fn help_names_every_command_and_fits_the_terminal() {
     let folder = tempdir().unwrap();
     let help = run(folder.path(), "--help").success();
-    for command in ["solve", "check", "converge", "bench", "export", "cases"] {
+    for command in ["solve", "check", "converge", "adapt", "bench", "export", "cases", "completions", "man"] {
         assert!(help.contains(&format!("\n  {command} ")), "{command}: {help}");
         let of_command = run(folder.path(), &format!("{command} --help")).success();
         assert!(of_command.contains(&format!("Usage: membranes {command}")), "{of_command}");
@@ -122,6 +122,33 @@ fn help_names_every_command_and_fits_the_terminal() {
     assert_eq!(lines_too_long(&"x".repeat(COLUMNS + 1)).len(), 1);
     let version = run(folder.path(), "--version").success();
     assert_eq!(version, format!("membranes {}\n", env!("CARGO_PKG_VERSION")));
+}
+
+#[test]
+fn shells_and_man_know_every_command_and_what_it_takes() {
+    let folder = tempdir().unwrap();
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let script = run(folder.path(), &format!("completions {shell}")).success();
+        assert!(["adapt", "max-vertices", "overwrite"].iter().all(|word| script.contains(word)), "{shell}");
+    }
+    assert_eq!(run(folder.path(), "completions cmd").code, Some(2));
+    let page = run(folder.path(), "man").success();
+    assert!(page.contains(".TH membranes") && page.contains("membranes\\-solve(1)"), "{page}");
+    run(folder.path(), "man --out pages").success();
+    let pages = files(&folder.path().join("pages"));
+    assert!(
+        pages.contains(&"membranes.1".into()) && pages.contains(&"membranes-adapt.1".into()),
+        "{pages:?}"
+    );
+    let solve = fs::read_to_string(folder.path().join("pages/membranes-solve.1")).unwrap();
+    assert!(solve.contains("time\\-limit"), "{solve}");
+}
+
+#[test]
+fn a_solution_that_is_zero_is_said_to_be_zero() {
+    let folder = folder_with(&CASE.replace("-2.0, \"10*sin(pi*x)\"", "0, 0").replace("0.1 + 0.05*x", "0"));
+    let table = run(folder.path(), "solve plates.toml").success();
+    assert!(table.contains("the solution is zero") && !table.contains("refine"), "{table}");
 }
 
 #[test]

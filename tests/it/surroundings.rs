@@ -325,7 +325,7 @@ fn a_full_disk_loses_nothing_that_was_there() {
     for arguments in [
         "solve case.toml -q --dual",
         "adapt case.toml -q --tolerance 0.1",
-        "export case.toml -q --format mtx",
+        "export case.toml -q --format mtx --refine 2",
     ] {
         let folder = folder_with(CASE);
         run(folder.path(), arguments).success();

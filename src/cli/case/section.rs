@@ -3,7 +3,7 @@
 use toml::{Table, Value};
 
 use crate::cli::failure::Failure;
-use crate::text::{excerpt, nearest};
+use crate::text::{excerpt, meant, nearest};
 
 /// Letters that may be wrong, missing, surplus or exchanged in a misspelt key.
 const MAX_SLIPS: usize = 2;
@@ -120,9 +120,11 @@ impl Section {
     pub(crate) fn finish(self) -> Result<(), Failure> {
         match self.table.keys().next() {
             None => Ok(()),
-            Some(key) => Err(match nearest(key, self.known.iter().copied()) {
-                Some((known, _)) => self.unknown(key, known),
-                None => self.error(key, "has no place here: remove it"),
+            Some(key) => Err(match meant(key, self.known.iter().copied()) {
+                Some(known) => self.unknown(key, known),
+                None => {
+                    self.error(key, format!("has no place here: known here are {}", self.known.join(", ")))
+                }
             }),
         }
     }

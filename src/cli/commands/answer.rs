@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::BufReader;
 use std::path::Path;
 
-use crate::action::{ContactSolution, Rejected, certify};
+use crate::action::{ContactSolution, Rejected, Residuals, certify};
 use crate::cli::args::CheckArguments;
 use crate::cli::failure::Failure;
 use crate::cli::run::files::{Part, SUMMARY};
@@ -70,17 +70,22 @@ fn statistics() -> Statistics {
 /// What would make an answer certify: the multipliers with the other sign, the polish, both; else accuracy.
 fn remedy(d: &Discretization, answer: &Answer, tolerance: f64) -> &'static str {
     let negative = Answer { y: answer.y.iter().map(|y| -y).collect(), ..answer.clone() };
-    let as_it_is = |answer: &Answer| {
-        certify(d, Candidate::from_answer(d, answer.clone(), statistics()), tolerance).is_ok()
+    // Of one that certifies: zero.
+    let residual = |answer: &Answer| {
+        let candidate = Candidate::from_answer(d, answer.clone(), statistics());
+        match certify(d, candidate, tolerance) {
+            Ok(_) => 0.0,
+            Err(rejected) => rejected.residuals.as_ref().map_or(f64::INFINITY, Residuals::beyond_rounding),
+        }
     };
     let polished = |answer: &Answer| {
         let options = SolverOptions { tolerance, ..SolverOptions::default() };
         let candidate = QpSolver::new(Given::new(d, answer)).solve(d, &options);
         candidate.is_ok_and(|candidate| certify(d, candidate, tolerance).is_ok())
     };
-    if as_it_is(&negative) {
+    if residual(&negative) == 0.0 {
         "; with -y in place of y it certifies: its multipliers have the other sign"
-    } else if polished(answer) {
+    } else if residual(answer) <= residual(&negative) && polished(answer) {
         "; its contact set is right, and polished it certifies: have it solved more accurately"
     } else if polished(&negative) {
         "; with -y in place of y, and polished, it certifies: change the sign, and have it solved more accurately"

@@ -174,7 +174,7 @@ fn table(title: &str, levels: &[LevelErrors], folder: &Path, drawn: bool) -> Str
     for measure in MEASURES {
         text += &format!(" {:>8}", shortened(measure.name));
     }
-    text += " effectiv\n";
+    text += "    index\n";
     for (k, level) in levels.iter().enumerate() {
         text += &format!("{:>10}", grouped(level.vertices));
         for measure in MEASURES {
@@ -196,6 +196,7 @@ fn table(title: &str, levels: &[LevelErrors], folder: &Path, drawn: bool) -> Str
         }
         text.push('\n');
     }
+    text += "  index: the guaranteed bound over the true error in the energy norm\n";
     let mut files = format!("{ERRORS}, {ERRORS_TABLE}");
     if drawn {
         files += &format!(", {RATES}");

@@ -280,7 +280,8 @@ fn error_line(summary: &Summary) -> String {
     let Some(bound) = summary.error_bound else { return String::new() };
     let relative = match summary.relative_error_bound {
         Some(relative) => format!("{:.2} %, guaranteed", 100.0 * relative),
-        None => "over half of it: refine".into(),
+        None if summary.energy_norm == Some(0.0) => "the solution is zero".into(),
+        None => "more than half of it: refine".into(),
     };
     format!("at most {bound:.3e} in the energy norm ({relative})")
 }

@@ -31,7 +31,8 @@ pub(super) fn table(title: &str, rows: &[Row], folder: &Path) -> String {
             text += &line(&cells(row));
         }
     }
-    text += "\n  seconds ~ vertices^p, certified rows\n";
+    text += "\n  work unit: the time of one product K x with the stiffness matrix of that mesh\n";
+    text += "  seconds ~ vertices^p, certified rows\n";
     let several = meshes.iter().any(|mesh| mesh.0 != meshes[0].0);
     for curve in curves(rows) {
         let problem = if several { format!("  {}", curve.problem) } else { String::new() };
