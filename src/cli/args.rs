@@ -140,6 +140,7 @@ pub(crate) struct AdaptArguments {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = "Without a case file, results go into out/bench.")]
 pub(crate) struct BenchArguments {
     /// A case, refined level by level [default: a family on the square]
     #[arg(value_name = "CASE.toml", conflicts_with = "sizes")]
@@ -220,9 +221,9 @@ impl OutputArguments {
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
-  bash   membranes completions bash > ~/.local/share/bash-completion/completions/membranes
-  zsh    membranes completions zsh > _membranes      in a folder of $fpath
-  fish   membranes completions fish > ~/.config/fish/completions/membranes.fish")]
+For bash, in ~/.bashrc:  source <(membranes completions bash)
+For zsh, in a folder of $fpath:  membranes completions zsh > _membranes
+For fish:  membranes completions fish > ~/.config/fish/completions/membranes.fish")]
 pub(crate) struct CompletionsArguments {
     /// The shell
     #[arg(value_enum)]
