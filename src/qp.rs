@@ -22,6 +22,7 @@ mod kkt;
 #[cfg(feature = "osqp")]
 mod osqp;
 mod problem;
+mod time_limit;
 
 #[cfg(feature = "clarabel")]
 pub use self::clarabel::Clarabel;
@@ -36,3 +37,4 @@ pub use export::{QpPart, write_matrix_market, write_npz, write_qps};
 pub use import::{AnswerError, Shape, read_answer};
 pub use kkt::KktResiduals;
 pub use problem::{QpError, QpProblem};
+pub use time_limit::{TimeLimit, TimeLimitError};

@@ -13,13 +13,13 @@ pub use multigrid::Multigrid;
 pub use polish::PolishReport;
 pub use qp_solver::QpSolver;
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use thiserror::Error;
 
 use crate::discretization::Discretization;
 use crate::multigrid::cholesky::NotFactored;
-use crate::qp::{Answer, BackendError, Status};
+use crate::qp::{Answer, BackendError, Status, TimeLimit};
 use crate::text::Number;
 
 /// Anything that solves (3.4): a [`QpBackend`](crate::qp::QpBackend) by way of [`QpSolver`], or a method of its own.
@@ -68,9 +68,9 @@ pub struct SolverOptions {
     pub tolerance: f64,
     /// Where to stop at the latest; `None`: the solver's own limit.
     pub max_iterations: Option<usize>,
-    /// Seconds after which to stop; `None`: no limit. Solvers look at the clock between their steps, of which a factorisation or
+    /// When to stop at the latest; `None`: no limit. Solvers look at the clock between their steps, of which a factorisation or
     /// the set-up of all levels is one.
-    pub time_limit: Option<f64>,
+    pub time_limit: Option<TimeLimit>,
     /// Whether to make the result exact by solving for its contact set.
     pub polish: bool,
     /// A guess on this mesh to start from, for solvers that can.
@@ -86,17 +86,14 @@ impl Default for SolverOptions {
 impl SolverOptions {
     /// When to stop a solve that has begun at `start`.
     pub(crate) fn deadline(&self, start: Instant) -> Option<Instant> {
-        self.time_limit.map(|seconds| start + Duration::from_secs_f64(seconds))
+        self.time_limit.and_then(|limit| limit.deadline(start))
     }
 
     pub(crate) fn check(&self) -> Result<(), SolverError> {
         if !(self.tolerance > 0.0 && self.tolerance < 1.0) {
             return Err(SolverError::Tolerance(self.tolerance));
         }
-        match self.time_limit {
-            Some(seconds) if !(seconds > 0.0 && seconds.is_finite()) => Err(SolverError::TimeLimit(seconds)),
-            _ => Ok(()),
-        }
+        Ok(())
     }
 }
 
@@ -239,7 +236,4 @@ pub enum SolverError {
     /// The tolerance is out of range.
     #[error("the tolerance is {}: give a number between 0 and 1", Number(*_0))]
     Tolerance(f64),
-    /// The time limit is out of range.
-    #[error("the time limit is {0} seconds: give a positive number")]
-    TimeLimit(f64),
 }

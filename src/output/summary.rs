@@ -80,6 +80,8 @@ pub struct Summary {
     pub residual_beyond_rounding: Option<f64>,
     /// The physical groups of the mesh file that the run has not used: names, or what they consist of and their numbers.
     pub unused_groups: Vec<String>,
+    /// Files that were left out, because the time was over.
+    pub left_out: Vec<&'static str>,
     /// Where the time went.
     pub seconds: Seconds,
 }
@@ -178,6 +180,7 @@ impl Summary {
             residuals: residuals.map(ResidualSummary::from),
             residual_beyond_rounding: residuals.map(Residuals::beyond_rounding),
             unused_groups: Vec::new(),
+            left_out: Vec::new(),
             seconds,
         }
     }

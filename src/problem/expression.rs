@@ -149,6 +149,14 @@ pub enum ExpressionError {
         /// Where it stands.
         column: usize,
     },
+    /// A single bar, of an absolute value or half of an `or`.
+    #[error(
+        "`|` at column {column} has no meaning here; write `abs(...)` for an absolute value, `||` for or"
+    )]
+    Bar {
+        /// Where it stands.
+        column: usize,
+    },
     /// Two decimal points, or an exponent without digits.
     #[error("malformed number `{text}` at column {column}; write it like `2`, `0.5` or `1e-3`")]
     MalformedNumber {

@@ -2,7 +2,8 @@
 
 use thiserror::Error;
 
-use super::QpProblem;
+use super::problem::QpProblem;
+use super::time_limit::TimeLimit;
 
 /// A solver of [`QpProblem`]s. Implement it to plug in a solver of your own: see `examples/custom_backend.rs`.
 ///
@@ -26,8 +27,8 @@ pub struct QpOptions {
     pub tolerance: f64,
     /// Where to stop at the latest; `None`: the backend's own limit.
     pub max_iterations: Option<usize>,
-    /// Seconds after which to stop; `None`: no limit.
-    pub time_limit: Option<f64>,
+    /// When to stop at the latest; `None`: no limit.
+    pub time_limit: Option<TimeLimit>,
     /// A guess `(x, y)`, for backends that can use one.
     pub warm_start: Option<(Vec<f64>, Vec<f64>)>,
 }

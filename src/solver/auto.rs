@@ -72,13 +72,13 @@ impl PreparedAuto<'_> {
         let Some(multigrid) = &mut self.multigrid else { return ActiveSet.solve(self.d, options) };
         let start = Instant::now();
         let stalled = multigrid.solve(options)?;
-        let left = options.time_limit.map(|seconds| seconds - start.elapsed().as_secs_f64());
-        if stalled.statistics.status != Status::Stalled || left.is_some_and(|left| left <= 0.0) {
+        let left = options.time_limit.map(|limit| limit.left_since(start));
+        if stalled.statistics.status != Status::Stalled || left == Some(None) {
             return Ok(stalled);
         }
         self.multigrid = None;
         let mut candidate =
-            ActiveSet.solve(self.d, &SolverOptions { time_limit: left, ..options.clone() })?;
+            ActiveSet.solve(self.d, &SolverOptions { time_limit: left.flatten(), ..options.clone() })?;
         let method = format!("{} on algebraic levels", Multigrid.name());
         candidate.statistics = candidate.statistics.after(method, stalled.statistics);
         Ok(candidate)

@@ -99,10 +99,11 @@ pub fn solve_bounded(
         let mut bounded = at(LOOSEST, options)?;
         // What cannot be had more accurately, or not in time, is certified as it is.
         while let Some(tighter) = bounded.tighter() {
-            let time_limit = options.time_limit.map(|limit| limit - start.elapsed().as_secs_f64());
-            if time_limit.is_some_and(|left| left <= 0.0) {
+            let time_limit = options.time_limit.map(|limit| limit.left_since(start));
+            if time_limit == Some(None) {
                 break;
             }
+            let time_limit = time_limit.flatten();
             let warm_start = Some(Fields::from(&bounded.solution).into_start(d));
             match at(tighter, &SolverOptions { warm_start, time_limit, ..options.clone() }) {
                 Ok(better) => bounded = better,

@@ -11,6 +11,7 @@ use crate::discretization::Discretization;
 use crate::estimate::{ErrorBound, energy_error, residual_indicators};
 use crate::mesh::{Bisection, Mesh};
 use crate::problem::{ContactProblem, Domain, ExactSolution};
+use crate::qp::TimeLimit;
 use crate::solver::{Candidate, ContactSolver, SolverOptions, StartingPoint, Statistics};
 
 /// The fraction of the squared error in the triangles that are marked.
@@ -129,7 +130,7 @@ impl AdaptiveStudy {
     }
 
     /// Limits the time of each solve from now on, seconds.
-    pub fn set_time_limit(&mut self, time_limit: Option<f64>) {
+    pub fn set_time_limit(&mut self, time_limit: Option<TimeLimit>) {
         self.options.time_limit = time_limit;
     }
 

@@ -11,6 +11,8 @@ mod bench;
 mod cones;
 mod custom_backend;
 mod exact;
+#[cfg(feature = "cli")]
+mod folders;
 mod hostile_numbers;
 mod invariance;
 mod layers;

@@ -69,7 +69,13 @@ fn the_slope_is_the_exponent_of_the_certified_rows_of_one_curve() {
 
 #[test]
 fn a_solved_problem_is_a_certified_row_whose_figures_fit() {
-    let rows = rows(ActiveSet, SolverOptions { time_limit: Some(AMPLE), ..SolverOptions::default() });
+    let rows = rows(
+        ActiveSet,
+        SolverOptions {
+            time_limit: Some(TimeLimit::from_seconds(AMPLE).unwrap()),
+            ..SolverOptions::default()
+        },
+    );
     assert_eq!(rows.len(), 2);
     for (row, vertices) in rows.iter().zip([25, 81]) {
         assert_eq!((row.vertices, row.certified, row.status.as_str()), (vertices, true, "solved"));
@@ -137,7 +143,10 @@ fn who_exceeds_the_time_limit_is_not_tried_on_larger_meshes_of_that_problem() {
         Ok(candidate)
     }));
     let quick: Box<dyn ContactSolver> = Box::new(ActiveSet);
-    let options = SolverOptions { time_limit: Some(AMPLE), ..SolverOptions::default() };
+    let options = SolverOptions {
+        time_limit: Some(TimeLimit::from_seconds(AMPLE).unwrap()),
+        ..SolverOptions::default()
+    };
     let mut comparison = Comparison::new(vec![("slow".into(), slow), ("quick".into(), quick)], options);
     let (problem, meshes) = (square_problem().expect("valid"), meshes());
     let d = discretizations(&problem, &meshes);
@@ -155,10 +164,11 @@ fn who_exceeds_the_time_limit_is_not_tried_on_larger_meshes_of_that_problem() {
 
 #[test]
 fn a_total_above_the_limit_exceeds_it_too() {
+    let limit = |seconds| Some(TimeLimit::from_seconds(seconds).unwrap());
     let limited = |limit| SolverOptions { time_limit: limit, ..SolverOptions::default() };
     let row = timed("a", 100, 2.0);
-    assert!(row.exceeds(&limited(Some(1.0))));
-    assert!(!row.exceeds(&limited(Some(3.0))) && !row.exceeds(&limited(None)));
+    assert!(row.exceeds(&limited(limit(1.0))));
+    assert!(!row.exceeds(&limited(limit(3.0))) && !row.exceeds(&limited(None)));
 }
 
 #[cfg(feature = "cli")]

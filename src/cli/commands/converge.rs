@@ -2,32 +2,32 @@
 
 use std::path::Path;
 
-use super::Failure;
-use super::args::ConvergeArguments;
-use super::case_file::BackendName;
-use super::clock::Clock;
-use super::levels::{GOES_ON, KEPT, Levels, MEMORY, TIME, failure, origin};
-use super::memory::Memory;
-use super::progress::Progress;
-use super::setup::{Setup, make_folder, options, solver, unused_groups, write_file};
-use super::terminal::{grouped, print};
-use super::watch::Watch;
+use super::solution::left_out_line;
+use crate::cli::args::ConvergeArguments;
+use crate::cli::case::BackendName;
+use crate::cli::failure::Failure;
+use crate::cli::run::clock::Clock;
+use crate::cli::run::files::{ERRORS, ERRORS_TABLE, Part, RATES};
+use crate::cli::run::folder::{Claim, Folder};
+use crate::cli::run::levels::{GOES_ON, KEPT, Levels, MEMORY, TIME, failure, settings, too_late};
+use crate::cli::run::memory::Memory;
+use crate::cli::run::progress::Progress;
+use crate::cli::run::setup::{Setup, check_refinements, options, solver, too_early, unused_groups};
+use crate::cli::run::watch::Watch;
+use crate::cli::terminal::{grouped, print};
 use crate::pictures::{RatesPicture, Series, render_rates};
+use crate::qp::TimeLimit;
 use crate::study::{ConvergenceStudy, LevelErrors, MEASURES, fitted_rate, markdown, rate};
 
-const LEVELS: &str = "summary.csv";
-const TABLE: &str = "convergence.md";
-const PICTURE: &str = "convergence.png";
 /// The slopes to compare with: those of the theory, and that of a discontinuous action in L2.
 const SLOPES: [f64; 4] = [0.5, 1.0, 1.5, 2.0];
-/// What the levels belong to.
-const ORIGIN: &str = "converge.toml";
 
-/// Each refinement makes four times as many triangles, and our solvers need time in proportion.
+/// Each refinement makes four times as many triangles, and the built-in solvers need time in proportion.
 const GROWTH: f64 = 4.0;
 
-pub(super) fn run(arguments: &ConvergeArguments, watch: &Watch) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &ConvergeArguments, watch: &Watch) -> Result<(), Failure> {
     let clock = Clock::new(arguments.time_limit);
+    clock.watch(watch, too_early(&arguments.case.path));
     let progress = Progress::new(arguments.case.quiet);
     let mut setup = Setup::new(&arguments.case, &progress)?;
     let Some(exact) = setup.case.exact.take() else {
@@ -40,18 +40,25 @@ pub(super) fn run(arguments: &ConvergeArguments, watch: &Watch) -> Result<(), Fa
     }
     let backend = setup.case.solver.backend;
     setup.check_memory(backend)?;
-    let folder = arguments.case.output_folder(arguments.out.as_ref());
-    make_folder(&folder, watch, KEPT)?;
-    let kept = Levels { folder: &folder, table: LEVELS, origin: ORIGIN };
-    let origin = origin(&arguments.case, backend, &setup.text);
-    let mut levels: Vec<LevelErrors> = kept.so_far(&origin)?;
+    check_refinements(&setup.name, setup.family.mesh().points().len() as f64, arguments.levels - 1)?;
+    let claim = Claim {
+        case: &setup.id,
+        part: Part::Converge,
+        settings: settings(&setup),
+        overwrite: arguments.output.overwrite,
+        says: KEPT,
+    };
+    let folder = Folder::claim(&arguments.output.folder(&arguments.case.path), &claim, watch)?;
+    let kept = Levels { folder: &folder, table: ERRORS, picture: RATES };
+    let mut levels: Vec<LevelErrors> = kept.so_far();
     levels.truncate(arguments.levels);
 
-    let settings = &setup.case.solver;
+    let (title, settings) = (setup.case.title, &setup.case.solver);
     let solver = solver(backend);
     let mut study = ConvergenceStudy::new(exact, setup.family, solver, options(settings), settings.tolerance)
         .map_err(|error| failure(&setup.name, &error, &setup.node_tags))?;
-    clock.watch(watch, &setup.name);
+    let name = setup.name.clone();
+    clock.watch(watch, move || too_late(&name));
     let limits = Limits {
         levels: arguments.levels,
         clock,
@@ -61,10 +68,10 @@ pub(super) fn run(arguments: &ConvergeArguments, watch: &Watch) -> Result<(), Fa
     };
     let stop = add_levels(&setup.name, &mut study, &mut levels, &limits, &kept, &progress)?;
     watch.lift();
-    write_picture(&folder, &setup.case.title, &levels)?;
+    let drawn = write_picture(&folder, &title, &levels, &clock)?;
     drop(progress);
     if !arguments.case.quiet {
-        print(&(table(&setup.case.title, &levels, &folder) + &unused_groups(&setup.groups)))?;
+        print(&(table(&title, &levels, folder.path(), drawn) + &unused_groups(&setup.groups)))?;
     }
     stop.map_or(Ok(()), |why| {
         let (done, of) = (levels.len(), arguments.levels);
@@ -82,7 +89,7 @@ struct Limits {
     memory: Memory,
     backend: BackendName,
     /// Seconds of each solve.
-    time_limit: Option<f64>,
+    time_limit: Option<TimeLimit>,
 }
 
 impl Limits {
@@ -129,32 +136,45 @@ fn add_levels(
         }
         if level >= known {
             kept.write(levels)?;
-            write_file(&kept.folder.join(TABLE), |out| out.write_all(markdown(levels).as_bytes()))?;
+            kept.folder.write(ERRORS_TABLE, |out| out.write_all(markdown(levels).as_bytes()))?;
         }
         progress.step();
     }
     Ok(None)
 }
 
-/// The errors against the mesh size.
-fn write_picture(folder: &Path, title: &str, levels: &[LevelErrors]) -> Result<(), Failure> {
+/// The errors against the mesh size, if there is time; says whether there was.
+fn write_picture(
+    folder: &Folder,
+    title: &str,
+    levels: &[LevelErrors],
+    clock: &Clock,
+) -> Result<bool, Failure> {
     let h: Vec<f64> = levels.iter().map(|level| level.h).collect();
     let values: Vec<Vec<f64>> =
         MEASURES.iter().map(|measure| levels.iter().map(measure.of).collect()).collect();
-    let series: Vec<Series> =
-        MEASURES.iter().zip(&values).map(|(measure, values)| Series { name: measure.name, values }).collect();
-    let picture = RatesPicture { title, abscissa: "h", h: &h, series: &series, slopes: &SLOPES };
-    let png = render_rates(&picture).map_err(|error| Failure::Input(format!("{PICTURE}: {error}")))?;
-    write_file(&folder.join(PICTURE), |out| out.write_all(&png))
+    let title = title.to_owned();
+    let picture = clock.in_time(move || {
+        let series: Vec<Series> = MEASURES
+            .iter()
+            .zip(&values)
+            .map(|(measure, values)| Series { name: measure.name, values })
+            .collect();
+        render_rates(&RatesPicture { title: &title, abscissa: "h", h: &h, series: &series, slopes: &SLOPES })
+    });
+    let Some(png) = picture else { return Ok(false) };
+    let png = png.map_err(|error| Failure::Input(format!("{RATES}: {error}")))?;
+    folder.write(RATES, |out| out.write_all(&png))?;
+    Ok(true)
 }
 
 /// The errors with their rates, for the eye.
-fn table(title: &str, levels: &[LevelErrors], folder: &Path) -> String {
+fn table(title: &str, levels: &[LevelErrors], folder: &Path, drawn: bool) -> String {
     let mut text = format!("{title}\n  vertices");
     for measure in MEASURES {
         text += &format!(" {:>8}", shortened(measure.name));
     }
-    text += " effectiv\n";
+    text += "    index\n";
     for (k, level) in levels.iter().enumerate() {
         text += &format!("{:>10}", grouped(level.vertices));
         for measure in MEASURES {
@@ -176,7 +196,14 @@ fn table(title: &str, levels: &[LevelErrors], folder: &Path) -> String {
         }
         text.push('\n');
     }
-    text + &format!("  files: {}/{{{LEVELS}, {TABLE}, {PICTURE}}}\n", folder.display())
+    text += "  index: the guaranteed bound over the true error in the energy norm\n";
+    let mut files = format!("{ERRORS}, {ERRORS_TABLE}");
+    if drawn {
+        files += &format!(", {RATES}");
+    } else {
+        text += &format!("  left out: {}\n", left_out_line(&[RATES]));
+    }
+    text + &format!("  files: {}/{{{files}}}\n", folder.display())
 }
 
 fn rate_text(rate: Option<f64>) -> String {

@@ -9,11 +9,12 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use super::Failure;
+use crate::cli::failure::Failure;
 use crate::discretization::Discretization;
 use crate::output::discard_unfinished;
+use crate::qp::TimeLimit;
 use crate::solver::{Candidate, ContactSolver, SolverError, SolverOptions};
 
 /// A solver looks at the clock between its steps. What goes on longer than this fraction of the limit
@@ -23,10 +24,17 @@ const GRACE: f64 = 0.02;
 /// As large as the stack of a main thread usually is.
 const STACK: usize = 8 << 20;
 
+/// What has a limit of time: the whole run, and a solve in it.
+#[derive(Clone, Copy)]
+enum Span {
+    Run,
+    Solve,
+}
+
 /// What the waiting thread hears.
 enum Event {
     Folder(PathBuf, &'static str),
-    Alarm(Option<Alarm>),
+    Alarm(Span, Option<Alarm>),
     Interrupt,
     Panic(String),
     End(Result<(), Failure>),
@@ -41,35 +49,38 @@ struct Alarm {
 type GiveUp = Arc<dyn Fn() -> Failure + Send + Sync>;
 
 impl Alarm {
-    fn after(seconds: f64, give_up: GiveUp) -> Self {
-        Self { at: Instant::now() + Duration::from_secs_f64((1.0 + GRACE) * seconds), give_up }
+    /// None when the moment is beyond what the clock can say.
+    fn after(limit: TimeLimit, give_up: GiveUp) -> Option<Self> {
+        let at = limit.deadline(Instant::now())?.checked_add(limit.duration().mul_f64(GRACE))?;
+        Some(Self { at, give_up })
     }
 }
 
 /// Tells the waiting thread what to do when the run is ended from outside.
 #[derive(Clone)]
-pub(super) struct Watch {
+pub(crate) struct Watch {
     events: Sender<Event>,
 }
 
 impl Watch {
     /// Where the run writes, and what an interrupted one has to say of that.
-    pub(super) fn folder(&self, folder: &Path, says: &'static str) {
+    pub(crate) fn folder(&self, folder: &Path, says: &'static str) {
         self.tell(Event::Folder(folder.into(), says));
     }
 
-    /// Ends the run by `give_up` when this many seconds have passed, and a little more, unless the limit is lifted before.
-    pub(super) fn limit(&self, seconds: f64, give_up: impl Fn() -> Failure + Send + Sync + 'static) {
-        self.tell(Event::Alarm(Some(Alarm::after(seconds, Arc::new(give_up)))));
+    /// Ends the run by `give_up` when this much time has passed, and a little more, unless the limit is lifted before, or another
+    /// one takes its place.
+    pub(crate) fn limit(&self, limit: TimeLimit, give_up: impl Fn() -> Failure + Send + Sync + 'static) {
+        self.tell(Event::Alarm(Span::Run, Alarm::after(limit, Arc::new(give_up))));
     }
 
     /// What follows is waited for.
-    pub(super) fn lift(&self) {
-        self.tell(Event::Alarm(None));
+    pub(crate) fn lift(&self) {
+        self.tell(Event::Alarm(Span::Run, None));
     }
 
     /// The solver, whose time limit now holds whatever it does: a run whose solver does not come back ends by `give_up`.
-    pub(super) fn over(
+    pub(crate) fn over(
         &self,
         solver: Box<dyn ContactSolver>,
         give_up: impl Fn() -> Failure + Send + Sync + 'static,
@@ -96,16 +107,16 @@ impl ContactSolver for Watched {
     }
 
     fn solve(&mut self, d: &Discretization, options: &SolverOptions) -> Result<Candidate, SolverError> {
-        let alarm = options.time_limit.map(|seconds| Alarm::after(seconds, Arc::clone(&self.give_up)));
-        self.watch.tell(Event::Alarm(alarm));
+        let alarm = options.time_limit.and_then(|limit| Alarm::after(limit, Arc::clone(&self.give_up)));
+        self.watch.tell(Event::Alarm(Span::Solve, alarm));
         let candidate = self.solver.solve(d, options);
-        self.watch.lift();
+        self.watch.tell(Event::Alarm(Span::Solve, None));
         candidate
     }
 }
 
 /// Runs `work` until it ends, is interrupted, or its solver exceeds a limit.
-pub(super) fn watched(
+pub(crate) fn watched(
     work: impl FnOnce(&Watch) -> Result<(), Failure> + Send + 'static,
 ) -> Result<(), Failure> {
     let (events, inbox) = mpsc::channel();
@@ -135,12 +146,14 @@ fn follow(
     });
     let worker = worker.map_err(|error| Failure::Input(format!("cannot start a thread: {error}")))?;
 
-    let (mut folder, mut alarm) = (None, None);
+    let mut folder = None;
+    let mut alarms = [None, None];
     let failure = loop {
-        match next(inbox, alarm.as_ref()) {
+        let alarm = alarms.iter().flatten().min_by_key(|alarm: &&Alarm| alarm.at);
+        match next(inbox, alarm) {
             Some(Event::End(result)) => return result,
             Some(Event::Folder(path, says)) => folder = Some((path, says)),
-            Some(Event::Alarm(new)) => alarm = new,
+            Some(Event::Alarm(span, new)) => alarms[span as usize] = new,
             Some(Event::Interrupt) => break interrupted(folder.as_ref()),
             Some(Event::Panic(message)) => {
                 // On its way out, the computing thread removes what it was writing.
@@ -148,7 +161,7 @@ fn follow(
                 return Err(Failure::Internal(message));
             }
             None => {
-                if let Some(alarm) = &alarm {
+                if let Some(alarm) = alarm {
                     break (alarm.give_up)();
                 }
             }
@@ -178,7 +191,7 @@ fn interrupted(folder: Option<&(PathBuf, &str)>) -> Failure {
     })
 }
 
-/// A panic is a mistake of ours: one line says where, in place of a trace.
+/// A panic is an internal error: one line says where, in place of a trace.
 fn report_panics(events: Sender<Event>) {
     panic::set_hook(Box::new(move |info| {
         let payload = info.payload();
@@ -199,6 +212,8 @@ fn clear_progress() {
 
 #[cfg(test)]
 mod tests {
+    use std::time::Duration;
+
     use super::*;
 
     /// Follows `work`, to which an interrupt may come.
@@ -211,6 +226,10 @@ mod tests {
             events.send(Event::Interrupt).expect("somebody listens");
         }
         follow(work, events, &inbox)
+    }
+
+    fn limit(seconds: f64) -> TimeLimit {
+        TimeLimit::from_seconds(seconds).expect("a limit")
     }
 
     fn late() -> Failure {
@@ -240,7 +259,7 @@ mod tests {
     fn a_solver_that_does_not_come_back_is_not_waited_for_and_one_that_does_is() {
         let not_back = follow_to(
             |watch| {
-                watch.limit(1e-3, late);
+                watch.limit(limit(1e-3), late);
                 watch.folder(Path::new("somewhere"), "is as it was");
                 for_ever()
             },
@@ -249,7 +268,8 @@ mod tests {
         assert_eq!(not_back, Err(late()));
         let lifted = follow_to(
             |watch| {
-                watch.limit(3600.0, late);
+                watch.limit(limit(3600.0), late);
+                watch.limit(limit(1e19), late);
                 watch.lift();
                 Ok(())
             },

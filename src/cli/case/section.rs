@@ -2,14 +2,14 @@
 
 use toml::{Table, Value};
 
-use super::Failure;
-use crate::text::{excerpt, nearest};
+use crate::cli::failure::Failure;
+use crate::text::{excerpt, meant, nearest};
 
 /// Letters that may be wrong, missing, surplus or exchanged in a misspelt key.
 const MAX_SLIPS: usize = 2;
 
 /// The tables of a case file, each read once by its keys; [`finish`](Section::finish) refuses the others.
-pub(super) struct Section {
+pub(crate) struct Section {
     /// The case file, for messages.
     file: String,
     /// The table's name with a dot, or nothing at the top.
@@ -19,7 +19,7 @@ pub(super) struct Section {
 }
 
 impl Section {
-    pub(super) fn top(file: &str, text: &str) -> Result<Self, Failure> {
+    pub(crate) fn top(file: &str, text: &str) -> Result<Self, Failure> {
         let table = text.parse::<Table>().map_err(|error| {
             let place = error.span().map_or_else(String::new, |span| place(text, span.start));
             Failure::Input(format!("{file}{place}: {}", error.message().replace('\n', "; ")))
@@ -28,7 +28,7 @@ impl Section {
     }
 
     /// A table in this one; an empty one when it is missing.
-    pub(super) fn section(&mut self, key: &'static str) -> Result<Self, Failure> {
+    pub(crate) fn section(&mut self, key: &'static str) -> Result<Self, Failure> {
         let table = match self.take(key) {
             None => Table::new(),
             Some(Value::Table(table)) => table,
@@ -41,17 +41,17 @@ impl Section {
     }
 
     /// The value of a key that this table may have.
-    pub(super) fn take(&mut self, key: &'static str) -> Option<Value> {
+    pub(crate) fn take(&mut self, key: &'static str) -> Option<Value> {
         self.known.push(key);
         self.table.remove(key)
     }
 
-    pub(super) fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.table.is_empty()
     }
 
     /// All remaining keys as numbers, whatever they are called.
-    pub(super) fn all_numbers(&mut self) -> Result<Vec<(String, f64)>, Failure> {
+    pub(crate) fn all_numbers(&mut self) -> Result<Vec<(String, f64)>, Failure> {
         std::mem::take(&mut self.table)
             .into_iter()
             .map(|(key, value)| match as_number(&value) {
@@ -61,14 +61,14 @@ impl Section {
             .collect()
     }
 
-    pub(super) fn number(&mut self, key: &'static str) -> Result<Option<f64>, Failure> {
+    pub(crate) fn number(&mut self, key: &'static str) -> Result<Option<f64>, Failure> {
         self.take(key)
             .map(|value| as_number(&value).ok_or_else(|| self.error(key, "must be a number")))
             .transpose()
     }
 
     /// A whole number of at least `least`.
-    pub(super) fn count(&mut self, key: &'static str, least: usize) -> Result<Option<usize>, Failure> {
+    pub(crate) fn count(&mut self, key: &'static str, least: usize) -> Result<Option<usize>, Failure> {
         let must = format!("must be a whole number, at least {least}");
         self.take(key)
             .map(|value| {
@@ -78,13 +78,13 @@ impl Section {
             .transpose()
     }
 
-    pub(super) fn flag(&mut self, key: &'static str) -> Result<Option<bool>, Failure> {
+    pub(crate) fn flag(&mut self, key: &'static str) -> Result<Option<bool>, Failure> {
         self.take(key)
             .map(|value| value.as_bool().ok_or_else(|| self.error(key, "must be true or false")))
             .transpose()
     }
 
-    pub(super) fn text(&mut self, key: &'static str) -> Result<Option<String>, Failure> {
+    pub(crate) fn text(&mut self, key: &'static str) -> Result<Option<String>, Failure> {
         self.take(key)
             .map(|value| match value {
                 Value::String(text) => Ok(text),
@@ -94,14 +94,14 @@ impl Section {
     }
 
     /// A point, `[x, y]`.
-    pub(super) fn point(&mut self, key: &'static str) -> Result<Option<[f64; 2]>, Failure> {
+    pub(crate) fn point(&mut self, key: &'static str) -> Result<Option<[f64; 2]>, Failure> {
         self.take(key)
             .map(|value| point(&value).ok_or_else(|| self.error(key, "must be a point [x, y]")))
             .transpose()
     }
 
     /// A list of points.
-    pub(super) fn points(&mut self, key: &'static str) -> Result<Option<Vec<[f64; 2]>>, Failure> {
+    pub(crate) fn points(&mut self, key: &'static str) -> Result<Option<Vec<[f64; 2]>>, Failure> {
         self.take(key)
             .map(|value| {
                 points(&value).ok_or_else(|| self.error(key, "must be a list of points [[x, y], ...]"))
@@ -110,31 +110,33 @@ impl Section {
     }
 
     /// A list of lists of points.
-    pub(super) fn point_lists(&mut self, key: &'static str) -> Result<Option<Vec<Vec<[f64; 2]>>>, Failure> {
+    pub(crate) fn point_lists(&mut self, key: &'static str) -> Result<Option<Vec<Vec<[f64; 2]>>>, Failure> {
         let lists = |value: &Value| value.as_array()?.iter().map(points).collect::<Option<Vec<_>>>();
         let must = "must be a list of lists of points [[[x, y], ...], ...]";
         self.take(key).map(|value| lists(&value).ok_or_else(|| self.error(key, must))).transpose()
     }
 
     /// Refuses keys that nobody has asked for.
-    pub(super) fn finish(self) -> Result<(), Failure> {
+    pub(crate) fn finish(self) -> Result<(), Failure> {
         match self.table.keys().next() {
             None => Ok(()),
-            Some(key) => Err(match nearest(key, self.known.iter().copied()) {
-                Some((known, _)) => self.unknown(key, known),
-                None => self.error(key, "has no place here: remove it"),
+            Some(key) => Err(match meant(key, self.known.iter().copied()) {
+                Some(known) => self.unknown(key, known),
+                None => {
+                    self.error(key, format!("has no place here: known here are {}", self.known.join(", ")))
+                }
             }),
         }
     }
 
     /// The error for a key that has to be there.
-    pub(super) fn missing(&self, key: &'static str, remedy: &str) -> Failure {
+    pub(crate) fn missing(&self, key: &'static str, remedy: &str) -> Failure {
         self.misspelt(&[key]).unwrap_or_else(|| self.error(key, format!("is missing: {remedy}")))
     }
 
     /// The error for a key that is almost one of `wanted`, none of which is there: to say that they are missing would
     /// send the reader the wrong way.
-    pub(super) fn misspelt(&self, wanted: &[&str]) -> Option<Failure> {
+    pub(crate) fn misspelt(&self, wanted: &[&str]) -> Option<Failure> {
         self.table.keys().find_map(|key| match nearest(key, wanted.iter().copied()) {
             Some((meant, slips)) if slips <= MAX_SLIPS => Some(self.unknown(key, meant)),
             _ => None,
@@ -146,17 +148,17 @@ impl Section {
     }
 
     /// An error about a key of this table.
-    pub(super) fn error(&self, key: &str, problem: impl std::fmt::Display) -> Failure {
+    pub(crate) fn error(&self, key: &str, problem: impl std::fmt::Display) -> Failure {
         Failure::Input(format!("{}: `{}{}` {problem}", self.file, self.prefix, excerpt(key)))
     }
 
     /// An error about the table as a whole.
-    pub(super) fn table_error(&self, problem: impl std::fmt::Display) -> Failure {
+    pub(crate) fn table_error(&self, problem: impl std::fmt::Display) -> Failure {
         Failure::Input(format!("{}: {problem}", self.file))
     }
 }
 
-pub(super) fn as_number(value: &Value) -> Option<f64> {
+pub(crate) fn as_number(value: &Value) -> Option<f64> {
     value.as_float().or_else(|| value.as_integer().map(|integer| integer as f64))
 }
 

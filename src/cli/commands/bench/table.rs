@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use super::files::{PICTURE, ROWS, TABLE, solver_name};
+use super::files::solver_name;
+use crate::cli::run::files::{ROWS, ROWS_TABLE, TIMES};
 use crate::cli::terminal::grouped;
 use crate::study::comparison::{Row, curves, slope};
 
@@ -30,14 +31,15 @@ pub(super) fn table(title: &str, rows: &[Row], folder: &Path) -> String {
             text += &line(&cells(row));
         }
     }
-    text += "\n  seconds ~ vertices^p, certified rows\n";
+    text += "\n  work unit: the time of one product K x with the stiffness matrix of that mesh\n";
+    text += "  seconds ~ vertices^p, certified rows\n";
     let several = meshes.iter().any(|mesh| mesh.0 != meshes[0].0);
     for curve in curves(rows) {
         let problem = if several { format!("  {}", curve.problem) } else { String::new() };
         let exponent = slope(rows, curve).map_or_else(|| "-".into(), |slope| format!("{slope:.2}"));
         text += &format!("  {:NAME$} {exponent:>9}{problem}\n", cut(&solver_name(&curve), NAME));
     }
-    text + &format!("  files: {}/{{{ROWS}, {TABLE}, {PICTURE}}}\n", folder.display())
+    text + &format!("  files: {}/{{{ROWS}, {ROWS_TABLE}, {TIMES}}}\n", folder.display())
 }
 
 /// What tells meshes apart; other programs need not know `n`.

@@ -8,12 +8,12 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 const TICK: Duration = Duration::from_millis(120);
 
 /// A line on the terminal that says what is going on and for how long; nothing when standard error is not a terminal.
-pub(super) struct Progress {
+pub(crate) struct Progress {
     bar: ProgressBar,
 }
 
 impl Progress {
-    pub(super) fn new(quiet: bool) -> Self {
+    pub(crate) fn new(quiet: bool) -> Self {
         let target = if quiet { ProgressDrawTarget::hidden() } else { ProgressDrawTarget::stderr() };
         let bar = ProgressBar::with_draw_target(None, target);
         let style = ProgressStyle::with_template("{spinner} {msg} ({elapsed})");
@@ -23,19 +23,19 @@ impl Progress {
     }
 
     /// Shows a bar of so many steps from now on.
-    pub(super) fn steps(&self, count: usize) {
+    pub(crate) fn steps(&self, count: usize) {
         let style = ProgressStyle::with_template("{spinner} [{bar:20}] {msg} ({elapsed})");
         self.bar.set_style(style.expect("the template is valid"));
         self.bar.set_length(count as u64);
     }
 
     /// One step is done.
-    pub(super) fn step(&self) {
+    pub(crate) fn step(&self) {
         self.bar.inc(1);
     }
 
     /// Shows the current stage.
-    pub(super) fn stage(&self, what: impl Into<String>) {
+    pub(crate) fn stage(&self, what: impl Into<String>) {
         self.bar.reset_elapsed();
         self.bar.set_message(what.into());
     }

@@ -2,16 +2,13 @@
 
 use std::path::Path;
 
-use crate::cli::Failure;
-use crate::cli::input::{self, Input};
-use crate::cli::memory::Memory;
-use crate::cli::setup::write_file;
+use crate::cli::failure::Failure;
+use crate::cli::run::files::{ROWS, ROWS_TABLE, TIMES};
+use crate::cli::run::folder::Folder;
+use crate::cli::run::input::{self, Input};
+use crate::cli::run::memory::Memory;
 use crate::pictures::{Times, TimesPicture, render_times};
 use crate::study::comparison::{Curve, ORIGIN, Row, curves, markdown};
-
-pub(super) const ROWS: &str = "bench.csv";
-pub(super) const TABLE: &str = "bench.md";
-pub(super) const PICTURE: &str = "bench.png";
 
 /// The slopes to compare with: work in proportion to the vertices, and that of a sparse factorisation in the plane.
 const SLOPES: [f64; 2] = [1.0, 1.5];
@@ -39,8 +36,8 @@ pub(super) fn read_rows(path: &Path, memory: Memory) -> Result<Vec<Row>, Failure
 }
 
 /// The rows as they are.
-pub(super) fn write_rows(folder: &Path, rows: &[Row]) -> Result<(), Failure> {
-    write_file(&folder.join(ROWS), |out| {
+pub(super) fn write_rows(folder: &Folder, rows: &[Row]) -> Result<(), Failure> {
+    folder.write(ROWS, |out| {
         let mut writer = csv::Writer::from_writer(out);
         rows.iter().try_for_each(|row| writer.serialize(row))?;
         writer.flush()
@@ -48,8 +45,8 @@ pub(super) fn write_rows(folder: &Path, rows: &[Row]) -> Result<(), Failure> {
 }
 
 /// Table and picture.
-pub(super) fn write_results(folder: &Path, title: &str, rows: &[Row]) -> Result<(), Failure> {
-    write_file(&folder.join(TABLE), |out| out.write_all(markdown(rows).as_bytes()))?;
+pub(super) fn write_results(folder: &Folder, title: &str, rows: &[Row]) -> Result<(), Failure> {
+    folder.write(ROWS_TABLE, |out| out.write_all(markdown(rows).as_bytes()))?;
     let curves = curves(rows);
     let names = names(&curves);
     let points: Vec<Vec<[f64; 2]>> = curves
@@ -64,8 +61,8 @@ pub(super) fn write_results(folder: &Path, title: &str, rows: &[Row]) -> Result<
         .collect();
     let title = format!("{title}: time to a certified solution");
     let png = render_times(&TimesPicture { title: &title, curves: &drawn, slopes: &SLOPES })
-        .map_err(|error| Failure::Input(format!("{PICTURE}: {error}")))?;
-    write_file(&folder.join(PICTURE), |out| out.write_all(&png))
+        .map_err(|error| Failure::Input(format!("{TIMES}: {error}")))?;
+    folder.write(TIMES, |out| out.write_all(&png))
 }
 
 /// Names that tell the curves apart: of the solver, of who ran it if that was not this program, of the problem if there
@@ -93,7 +90,9 @@ mod tests {
     fn a_file_of_too_many_rows_is_refused() {
         let folder = tempfile::tempdir().unwrap();
         let read = |rows: usize| {
-            write_rows(folder.path(), &vec![Row::default(); rows]).unwrap();
+            let mut writer = csv::Writer::from_path(folder.path().join(ROWS)).unwrap();
+            (0..rows).for_each(|_| writer.serialize(Row::default()).unwrap());
+            drop(writer);
             read_rows(&folder.path().join(ROWS), Memory::new(None))
         };
         assert_eq!(read(MAX_ROWS).map(|rows| rows.len()), Ok(MAX_ROWS));

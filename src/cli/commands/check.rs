@@ -1,13 +1,14 @@
 //! `membranes check`: every residual, all backends, side by side, or of an answer from elsewhere.
 
-use super::args::CheckArguments;
-use super::case_file::BackendName;
-use super::progress::Progress;
-use super::setup::{Setup, options, solver, unused_groups};
-use super::terminal::{fixed, grouped, print};
-use super::watch::Watch;
-use super::{Failure, SolverSettings, answer};
+use super::answer::{self, Verdict};
 use crate::action::{ContactSolution, Rejected, Residuals, certify};
+use crate::cli::args::CheckArguments;
+use crate::cli::case::{BackendName, SolverSettings};
+use crate::cli::failure::Failure;
+use crate::cli::run::progress::Progress;
+use crate::cli::run::setup::{Setup, options, solver, unused_groups};
+use crate::cli::run::watch::Watch;
+use crate::cli::terminal::{fixed, grouped, print};
 use crate::discretization::Discretization;
 use crate::fem::element_loads;
 use crate::flux::{FluxDefects, Reconstruction, Reconstructor};
@@ -26,7 +27,7 @@ struct Column {
     result: Result<ContactSolution, Box<Rejected>>,
 }
 
-pub(super) fn run(arguments: &CheckArguments, watch: &Watch) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &CheckArguments, watch: &Watch) -> Result<(), Failure> {
     let progress = Progress::new(arguments.case.quiet);
     let mut setup = Setup::new(&arguments.case, &progress)?;
     if let Some(tolerance) = arguments.tolerance {
@@ -42,9 +43,9 @@ pub(super) fn run(arguments: &CheckArguments, watch: &Watch) -> Result<(), Failu
         None => (columns_of_backends(&setup, &d, &progress)?, ""),
         Some(file) => {
             progress.stage("judging the answer");
-            let result = answer::judge(&setup, &d, file, arguments.out.as_deref(), seconds, watch)?;
+            let Verdict { result, remedy } = answer::judge(&setup, &d, file, arguments, seconds, watch)?;
             let heading = [answer::NAME.into(), AS_IT_IS.into()];
-            (vec![Column { heading, must_certify: true, result }], answer::REMEDY)
+            (vec![Column { heading, must_certify: true, result }], remedy)
         }
     };
     drop(progress);

@@ -4,59 +4,67 @@ use std::io::{self, Read};
 use std::path::Path;
 use std::time::Instant;
 
-use super::args::CaseArguments;
-use super::case_file::{BackendName, CaseFile, MeshSource};
 use super::input::{self, Input};
 use super::memory::Memory;
 use super::progress::Progress;
-use super::terminal::grouped;
-use super::watch::Watch;
-use super::{Failure, SolverSettings};
+use crate::cli::args::CaseArguments;
+use crate::cli::case::{BackendName, CaseFile, CaseId, MeshSource, SolverSettings};
+use crate::cli::failure::Failure;
+use crate::cli::terminal::grouped;
 use crate::discretization::Discretization;
 use crate::formats::gmsh::{PhysicalGroup, parse};
 use crate::mesh::{GmshMesh, MAX_VERTICES, MeshFamily, ReadError, estimated_vertices, generate, gmsh_nodes};
-use crate::output::{FileSet, Seconds, WriteSeek, prepare_folder, write_atomically};
+use crate::output::Seconds;
 use crate::qp::Clarabel;
 use crate::solver::{ActiveSet, Auto, ContactSolver, Multigrid, QpSolver, SolverOptions};
 use crate::text::excerpt;
 
 /// The case and its meshes.
-pub(super) struct Setup {
-    pub(super) name: String,
-    /// The text of the case file.
-    pub(super) text: String,
-    pub(super) case: CaseFile,
-    pub(super) family: MeshFamily,
+pub(crate) struct Setup {
+    pub(crate) name: String,
+    pub(crate) id: CaseId,
+    pub(crate) case: CaseFile,
+    /// Refinements beside those of the case file.
+    further: usize,
+    pub(crate) family: MeshFamily,
     /// Gmsh's numbers of the vertices of the coarse mesh; none of a mesh that was generated.
-    pub(super) node_tags: Vec<u64>,
+    pub(crate) node_tags: Vec<u64>,
     /// The physical groups of the mesh file.
-    pub(super) groups: Vec<PhysicalGroup>,
-    pub(super) seconds: Seconds,
-    pub(super) memory: Memory,
+    pub(crate) groups: Vec<PhysicalGroup>,
+    pub(crate) seconds: Seconds,
+    pub(crate) memory: Memory,
 }
 
 impl Setup {
     /// Reads the case file and makes its mesh.
-    pub(super) fn new(arguments: &CaseArguments, progress: &Progress) -> Result<Self, Failure> {
+    pub(crate) fn new(arguments: &CaseArguments, progress: &Progress) -> Result<Self, Failure> {
         let name = arguments.path.display().to_string();
         let memory = Memory::new(arguments.memory_limit);
-        let text = CaseFile::read_text(&arguments.path, memory)?;
+        let text =
+            CaseFile::read_text(input::open(&arguments.path, Input::CaseFile, memory), &arguments.path)?;
         let case = CaseFile::parse(&name, &text, &arguments.path)?;
         progress.stage("making the mesh");
         let start = Instant::now();
         let Meshes { family, node_tags, groups } =
             make_mesh(&name, &case, arguments.refine as usize, memory)?;
+        let id = CaseId::new(&name, &text, &case.mesh);
         let seconds = Seconds { mesh: start.elapsed().as_secs_f64(), ..Seconds::default() };
-        Ok(Self { name, text, case, family, node_tags, groups, seconds, memory })
+        let further = arguments.refine as usize;
+        Ok(Self { name, id, case, further, family, node_tags, groups, seconds, memory })
+    }
+
+    /// How often the mesh was refined, by the case file and further.
+    pub(crate) fn refinements(&self) -> usize {
+        self.case.refine + self.further
     }
 
     /// Refuses a solver that needs more memory on this mesh than there is.
-    pub(super) fn check_memory(&self, backend: BackendName) -> Result<(), Failure> {
+    pub(crate) fn check_memory(&self, backend: BackendName) -> Result<(), Failure> {
         self.memory.check(&self.name, backend, self.family.mesh().points().len() as f64)
     }
 
     /// Assembles the discrete problem, and says how long it took.
-    pub(super) fn discretize(&self, progress: &Progress) -> Result<(Discretization, Seconds), Failure> {
+    pub(crate) fn discretize(&self, progress: &Progress) -> Result<(Discretization, Seconds), Failure> {
         progress.stage(format!("assembling on {} vertices", grouped(self.family.mesh().points().len())));
         let start = Instant::now();
         let d = Discretization::new(&self.case.problem, self.family.mesh().clone()).map_err(|error| {
@@ -68,7 +76,7 @@ impl Setup {
 }
 
 /// The groups that a run does not use, in one line for the terminal; nothing where there are none.
-pub(super) fn unused_groups(groups: &[PhysicalGroup]) -> String {
+pub(crate) fn unused_groups(groups: &[PhysicalGroup]) -> String {
     /// More names are no line.
     const MOST: usize = 6;
     if groups.is_empty() {
@@ -148,8 +156,17 @@ fn make_mesh(name: &str, case: &CaseFile, further: usize, memory: Memory) -> Res
     Ok(Meshes { family, node_tags, groups })
 }
 
+/// What to do when the time is over before a mesh is there.
+pub(crate) fn too_early(case: &Path) -> impl Fn() -> Failure + Send + Sync + 'static {
+    let name = case.display().to_string();
+    move || {
+        let why = "the time was over before the first solve, and nothing is written";
+        Failure::NotCertified(format!("{name}: {why}; allow more, or take a coarser mesh (--time-limit)"))
+    }
+}
+
 /// The vertices after so many refinements; refuses such that lead beyond what can be stored.
-pub(super) fn check_refinements(name: &str, vertices: f64, refinements: usize) -> Result<f64, Failure> {
+pub(crate) fn check_refinements(name: &str, vertices: f64, refinements: usize) -> Result<f64, Failure> {
     // Each refinement makes four times as many.
     let finest = vertices * 4f64.powf(refinements as f64);
     if finest <= MAX_VERTICES {
@@ -173,7 +190,7 @@ fn cannot_read(case: &str, mesh: &Path, error: &ReadError) -> Failure {
 }
 
 /// The solver of this name.
-pub(super) fn solver(name: BackendName) -> Box<dyn ContactSolver> {
+pub(crate) fn solver(name: BackendName) -> Box<dyn ContactSolver> {
     match name {
         BackendName::Clarabel => Box::new(QpSolver::new(Clarabel)),
         BackendName::ActiveSet => Box::new(ActiveSet),
@@ -187,7 +204,7 @@ pub(super) fn solver(name: BackendName) -> Box<dyn ContactSolver> {
 }
 
 /// What the settings ask of a solver.
-pub(super) fn options(settings: &SolverSettings) -> SolverOptions {
+pub(crate) fn options(settings: &SolverSettings) -> SolverOptions {
     SolverOptions {
         tolerance: settings.tolerance.or_default(),
         max_iterations: settings.max_iterations,
@@ -195,50 +212,4 @@ pub(super) fn options(settings: &SolverSettings) -> SolverOptions {
         polish: settings.polish,
         warm_start: None,
     }
-}
-
-/// Makes the folder for results: that nothing can be written there is said before anything is computed. `says` is what an
-/// interrupted run has to say of it.
-pub(super) fn make_folder(folder: &Path, watch: &Watch, says: &'static str) -> Result<(), Failure> {
-    prepare_folder(folder).map_err(|error| cannot_write(folder, &error))?;
-    watch.folder(folder, says);
-    Ok(())
-}
-
-/// The files of a result, which appear together, the summary last.
-pub(super) struct Results<'f> {
-    folder: &'f Path,
-    files: FileSet,
-}
-
-impl<'f> Results<'f> {
-    pub(super) fn new(folder: &'f Path) -> Self {
-        Self { folder, files: FileSet::new(folder) }
-    }
-
-    pub(super) fn write(
-        &mut self,
-        name: &str,
-        write: impl FnOnce(&mut (dyn WriteSeek + '_)) -> std::io::Result<()>,
-    ) -> Result<(), Failure> {
-        self.files
-            .write(Path::new(name), write)
-            .map_err(|error| cannot_write(&self.folder.join(name), &error))
-    }
-
-    pub(super) fn publish(self) -> Result<(), Failure> {
-        self.files.publish().map_err(|error| cannot_write(self.folder, &error))
-    }
-}
-
-/// Writes a result, whole or not at all.
-pub(super) fn write_file(
-    path: &Path,
-    write: impl FnOnce(&mut (dyn WriteSeek + '_)) -> std::io::Result<()>,
-) -> Result<(), Failure> {
-    write_atomically(path, write).map_err(|error| cannot_write(path, &error))
-}
-
-fn cannot_write(path: &Path, error: &std::io::Error) -> Failure {
-    Failure::Input(format!("{}: cannot write: {error}; name another folder with --out", path.display()))
 }

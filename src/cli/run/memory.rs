@@ -1,7 +1,7 @@
 //! How much memory there is, and how much a run needs: what would not fit is refused before it is begun.
 
-use super::Failure;
-use super::case_file::BackendName;
+use crate::cli::case::BackendName;
+use crate::cli::failure::Failure;
 
 const GIB: f64 = (1u64 << 30) as f64;
 
@@ -19,16 +19,16 @@ const QP_SOLVER: f64 = 200.0;
 
 /// Bytes that a run may take.
 #[derive(Clone, Copy)]
-pub(super) struct Memory(f64);
+pub(crate) struct Memory(f64);
 
 impl Memory {
     /// As many GiB as are asked for, else what is there.
-    pub(super) fn new(gibibytes: Option<f64>) -> Self {
+    pub(crate) fn new(gibibytes: Option<f64>) -> Self {
         Self(gibibytes.map(|limit| limit * GIB).or_else(available).unwrap_or(f64::INFINITY))
     }
 
     /// Whether a run on so many vertices has enough.
-    pub(super) fn suffices(self, backend: BackendName, vertices: f64) -> bool {
+    pub(crate) fn suffices(self, backend: BackendName, vertices: f64) -> bool {
         needed(backend, vertices) <= self.0
     }
 
@@ -38,7 +38,7 @@ impl Memory {
     }
 
     /// Refuses a run on so many vertices that has not enough.
-    pub(super) fn check(self, name: &str, backend: BackendName, vertices: f64) -> Result<(), Failure> {
+    pub(crate) fn check(self, name: &str, backend: BackendName, vertices: f64) -> Result<(), Failure> {
         if self.suffices(backend, vertices) {
             return Ok(());
         }

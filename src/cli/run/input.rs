@@ -10,7 +10,7 @@ use crate::formats::open_regular;
 /// What a file is read as. The bytes of memory for each of the file, at the peak of reading, are the most that were measured
 /// on inputs made for it (`tests/hostile/targets.rs`).
 #[derive(Clone, Copy)]
-pub(super) enum Input {
+pub(crate) enum Input {
     CaseFile,
     Mesh,
     /// The rows of a table.
@@ -44,7 +44,7 @@ impl Input {
 ///
 /// # Errors
 /// As [`open_regular`], and of the kind [`OutOfMemory`](io::ErrorKind::OutOfMemory), with its remedy, when it is too large.
-pub(super) fn open(path: &Path, input: Input, memory: Memory) -> io::Result<File> {
+pub(crate) fn open(path: &Path, input: Input, memory: Memory) -> io::Result<File> {
     let file = open_regular(path)?;
     let bytes = file.metadata()?.len() as f64;
     memory

@@ -6,14 +6,16 @@ mod table;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::Failure;
-use super::args::{BenchArguments, CaseArguments, output_folder};
-use super::case_file::BackendName;
-use super::memory::Memory;
-use super::progress::Progress;
-use super::setup::{Setup, check_refinements, make_folder, solver};
-use super::terminal::{grouped, print};
-use super::watch::Watch;
+use crate::cli::args::{BenchArguments, CaseArguments};
+use crate::cli::case::{BackendName, CaseId};
+use crate::cli::failure::Failure;
+use crate::cli::run::files::{Part, ROWS};
+use crate::cli::run::folder::{Claim, Folder};
+use crate::cli::run::memory::Memory;
+use crate::cli::run::progress::Progress;
+use crate::cli::run::setup::{Setup, check_refinements, solver};
+use crate::cli::run::watch::Watch;
+use crate::cli::terminal::{grouped, print};
 use crate::discretization::Discretization;
 use crate::mesh::{MAX_VERTICES, Mesh};
 use crate::problem::ContactProblem;
@@ -24,25 +26,25 @@ use files::{read_rows, write_results, write_rows};
 /// Where results go without a case file and without `--out`.
 const FAMILY: &str = "bench";
 
-pub(super) fn run(arguments: &BenchArguments, watch: &Watch) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &BenchArguments, watch: &Watch) -> Result<(), Failure> {
     let progress = Progress::new(arguments.quiet);
     let mut bench = Bench::new(arguments, &progress, watch)?;
-    match &arguments.case {
+    let folder = match &arguments.case {
         _ if arguments.no_run => bench.run_nothing()?,
         None => bench.run_family(&arguments.sizes)?,
         Some(path) => bench.run_case(path.clone(), arguments)?,
-    }
-    let Bench { title, rows, measured, folder, .. } = bench;
+    };
+    let Bench { title, rows, measured, .. } = bench;
     write_results(&folder, &title, &rows)?;
     drop(progress);
     if !arguments.quiet {
-        print(&table::table(&title, &rows, &folder))?;
+        print(&table::table(&title, &rows, folder.path()))?;
     }
     if arguments.no_run || rows[..measured].iter().any(|row| row.certified) {
         return Ok(());
     }
     let remedy = "allow more time by --time-limit, or choose others by --solvers";
-    Err(Failure::NotCertified(format!("{title}: no solver has a certified solution; {remedy}")))
+    Err(Failure::NotCertified(format!("{title}: no solver has a certified solution ({ROWS}); {remedy}")))
 }
 
 /// A comparison under way.
@@ -50,7 +52,7 @@ struct Bench<'a> {
     title: String,
     solvers: Vec<BackendName>,
     options: SolverOptions,
-    folder: PathBuf,
+    arguments: &'a BenchArguments,
     /// Those measured so far, before those of other files.
     rows: Vec<Row>,
     measured: usize,
@@ -60,7 +62,7 @@ struct Bench<'a> {
 
 impl<'a> Bench<'a> {
     /// Reads the rows of other files and makes the folder: what can fail does so before anything is measured.
-    fn new(arguments: &BenchArguments, progress: &'a Progress, watch: &'a Watch) -> Result<Self, Failure> {
+    fn new(arguments: &'a BenchArguments, progress: &'a Progress, watch: &'a Watch) -> Result<Self, Failure> {
         let mut rows = Vec::new();
         for path in &arguments.merge {
             rows.extend(read_rows(path, Memory::new(None))?);
@@ -81,10 +83,7 @@ impl<'a> Bench<'a> {
             title: "two membranes over the unit square".into(),
             solvers: if solvers.is_empty() { built() } else { solvers },
             options,
-            folder: output_folder(
-                arguments.case.as_deref().unwrap_or(FAMILY.as_ref()),
-                arguments.out.as_ref(),
-            ),
+            arguments,
             rows,
             measured: 0,
             progress,
@@ -92,8 +91,22 @@ impl<'a> Bench<'a> {
         })
     }
 
-    fn make_folder(&self) -> Result<(), Failure> {
-        make_folder(&self.folder, self.watch, "what was measured so far is in bench.csv")
+    /// The folder: rows measured in another way stay.
+    fn claim(&self, case: &CaseId, meshes: &str) -> Result<Folder, Failure> {
+        let names: Vec<&str> = self.solvers.iter().map(|solver| solver.as_str()).collect();
+        let seconds = self.arguments.time_limit.seconds();
+        let tolerance = self.options.tolerance;
+        let measured = if self.arguments.no_run { "nothing" } else { meshes };
+        let settings = format!("{measured}; {}; {seconds} s; tolerance {tolerance:e}", names.join(", "));
+        let claim = Claim {
+            case,
+            part: Part::Bench,
+            settings,
+            overwrite: self.arguments.output.overwrite,
+            says: "what was measured so far is in bench.csv",
+        };
+        let path = self.arguments.output.folder(self.arguments.case.as_deref().unwrap_or(FAMILY.as_ref()));
+        Folder::claim(&path, &claim, self.watch)
     }
 
     fn comparison(&self) -> Comparison {
@@ -101,13 +114,14 @@ impl<'a> Bench<'a> {
         Comparison::new(self.solvers.iter().map(contestant).collect(), self.options.clone())
     }
 
-    fn run_nothing(&self) -> Result<(), Failure> {
-        self.make_folder()?;
-        write_rows(&self.folder, &self.rows)
+    fn run_nothing(&self) -> Result<Folder, Failure> {
+        let folder = self.claim(&CaseId::built_in(FAMILY), "")?;
+        write_rows(&folder, &self.rows)?;
+        Ok(folder)
     }
 
     /// The built-in family on meshes of these numbers of cells along a side, from the coarsest.
-    fn run_family(&mut self, sizes: &[usize]) -> Result<(), Failure> {
+    fn run_family(&mut self, sizes: &[usize]) -> Result<Folder, Failure> {
         let bad_input = |error: &dyn std::fmt::Display| Failure::Input(format!("--sizes: {error}"));
         let mut sizes = sizes.to_vec();
         sizes.sort_unstable();
@@ -117,42 +131,43 @@ impl<'a> Bench<'a> {
             return Err(bad_input(&message));
         }
         let problem = square_problem().map_err(|error| bad_input(&error))?;
-        self.make_folder()?;
+        let folder = self.claim(&CaseId::built_in(FAMILY), &format!("cells {sizes:?}"))?;
         self.progress.steps(sizes.len() * self.solvers.len());
         let mut comparison = self.comparison();
         for n in sizes {
             let mesh = Arc::new(square_mesh(n).map_err(|error| bad_input(&error))?);
-            self.measure(&mut comparison, SQUARE, n, &problem, &mesh)?;
+            self.measure(&mut comparison, &folder, SQUARE, n, &problem, &mesh)?;
         }
-        Ok(())
+        Ok(folder)
     }
 
     /// A case on its mesh and its refinements.
-    fn run_case(&mut self, path: PathBuf, bench: &BenchArguments) -> Result<(), Failure> {
+    fn run_case(&mut self, path: PathBuf, bench: &BenchArguments) -> Result<Folder, Failure> {
         let levels = bench.levels;
         let arguments = CaseArguments { path, refine: 0, memory_limit: None, quiet: false };
-        let Setup { name, case, mut family, .. } = Setup::new(&arguments, self.progress)?;
+        let Setup { name, id, case, mut family, .. } = Setup::new(&arguments, self.progress)?;
         check_refinements(&name, family.mesh().points().len() as f64, levels - 1)?;
         self.title.clone_from(&case.title);
         self.options.tolerance = bench.tolerance.unwrap_or(case.solver.tolerance.or_default());
         let stem = arguments.path.file_stem().unwrap_or(arguments.path.as_os_str());
         let stem = stem.to_string_lossy();
-        self.make_folder()?;
+        let folder = self.claim(&id, &format!("{levels} levels"))?;
         self.progress.steps(levels * self.solvers.len());
         let mut comparison = self.comparison();
         for level in 0..levels {
             if level > 0 {
                 family.refine().map_err(|error| Failure::Input(format!("{name}: [mesh]: {error}")))?;
             }
-            self.measure(&mut comparison, &stem, level, &case.problem, family.mesh())?;
+            self.measure(&mut comparison, &folder, &stem, level, &case.problem, family.mesh())?;
         }
-        Ok(())
+        Ok(folder)
     }
 
     /// Runs all solvers on one mesh. After each, all rows are in the file: a long run may be stopped.
     fn measure(
         &mut self,
         comparison: &mut Comparison,
+        folder: &Folder,
         name: &str,
         n: usize,
         problem: &ContactProblem,
@@ -170,7 +185,7 @@ impl<'a> Bench<'a> {
             self.rows.retain(|old| !old.repeats(&row));
             self.rows.insert(self.measured, row);
             self.measured += 1;
-            write_rows(&self.folder, &self.rows)?;
+            write_rows(folder, &self.rows)?;
             self.progress.step();
         }
         Ok(())

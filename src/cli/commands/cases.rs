@@ -1,11 +1,11 @@
 //! `membranes cases`.
 
-use super::Failure;
-use super::args::CasesArguments;
-use super::terminal::print;
+use crate::cli::args::CasesArguments;
+use crate::cli::failure::Failure;
+use crate::cli::terminal::print;
 use crate::problem::Case;
 
-pub(super) fn run(arguments: &CasesArguments) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &CasesArguments) -> Result<(), Failure> {
     let text = match &arguments.name {
         None => list(),
         Some(name) => case_file(Case::from_name(name).map_err(|error| Failure::Input(error.to_string()))?),

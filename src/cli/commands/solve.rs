@@ -1,86 +1,68 @@
 //! `membranes solve`.
 
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Instant;
 
-use super::Failure;
-use super::args::SolveArguments;
-use super::case_file::CaseFile;
-use super::progress::Progress;
-use super::setup::{Results, Setup, make_folder, options, solver, unused_groups};
-use super::terminal::{fields, fixed, grouped, print};
-use super::watch::Watch;
+use super::solution::{A_SOLUTION, left_out_line, write_picture, write_solution};
 use crate::action::{ContactSolution, Rejected};
+use crate::cli::args::SolveArguments;
+use crate::cli::case::CaseFile;
+use crate::cli::failure::Failure;
+use crate::cli::run::clock::Clock;
+use crate::cli::run::files::{DUAL, FLUX, MEMBRANES, MESH, Part, SOLUTION, SUMMARY};
+use crate::cli::run::folder::{Claim, Folder, Results};
+use crate::cli::run::progress::Progress;
+use crate::cli::run::setup::{Setup, options, solver, too_early, unused_groups};
+use crate::cli::run::watch::Watch;
+use crate::cli::terminal::{fields, fixed, grouped, print};
 use crate::discretization::Discretization;
-use crate::estimate::ErrorBound;
 use crate::fem::element_loads;
 use crate::flux::{Reconstruction, Reconstructor};
 use crate::mesh::{DualMesh, SubTriangulation};
-use crate::output::{Seconds, Summary, remove, write_dual_vtu, write_flux_vtu, write_vtu};
-use crate::pictures::membranes::{Picture, render};
+use crate::output::{Seconds, Summary, write_dual_vtu, write_flux_vtu};
 use crate::pictures::{MeshPicture, render_mesh};
-use crate::qp::Status;
+use crate::qp::{Status, TimeLimit};
 use crate::solver::{PolishReport, Statistics};
 use crate::study::{AccuracyError, Bounded, solve_bounded};
-
-/// The files that hold a solution: present only when it is certified.
-pub(super) const SOLUTION: &str = "solution.vtu";
-pub(super) const PICTURE: &str = "membranes.png";
-pub(super) const SUMMARY: &str = "summary.json";
-/// What `--dual` adds.
-const DUAL: &str = "dual.vtu";
-const MESH_PICTURE: &str = "mesh.png";
-const FLUX: &str = "flux.vtu";
 
 /// What an interrupted run has to say.
 const UNTOUCHED: &str = "it is as it was";
 
-pub(super) fn run(arguments: &SolveArguments, watch: &Watch) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &SolveArguments, watch: &Watch) -> Result<(), Failure> {
+    let clock = Clock::new(arguments.time_limit);
+    clock.watch(watch, too_early(&arguments.case.path));
     let progress = Progress::new(arguments.case.quiet);
     let mut setup = Setup::new(&arguments.case, &progress)?;
-    override_settings(&mut setup, arguments);
-    let settings = &setup.case.solver;
-    setup.check_memory(settings.backend)?;
-    let folder = arguments.case.output_folder(arguments.out.as_ref());
+    override_settings(&mut setup, arguments, &clock);
+    setup.check_memory(setup.case.solver.backend)?;
     let (d, seconds) = setup.discretize(&progress)?;
-    make_folder(&folder, watch, UNTOUCHED)?;
+    let claim = Claim {
+        case: &setup.id,
+        part: Part::Solution,
+        settings: A_SOLUTION.into(),
+        overwrite: arguments.output.overwrite,
+        says: UNTOUCHED,
+    };
+    let folder = Folder::claim(&arguments.output.folder(&arguments.case.path), &claim, watch)?;
 
-    progress.stage(format!(
-        "{} solves for {} unknowns",
-        settings.backend.as_str(),
-        grouped(2 * d.interior().len())
-    ));
-    let options = options(settings);
-    let problem = &setup.case.problem;
-    let domain = setup.case.domain();
-    let mut solver = watch.over(solver(settings.backend), too_late(&setup, &d, &folder, seconds));
-    let result = solve_bounded(problem, domain, &d, &mut *solver, &options, settings.tolerance);
-    let title = &setup.case.title;
-
+    let result = solve(&setup, &d, seconds, &clock, (&folder, watch), &progress);
+    watch.lift();
     match result {
-        Ok(Bounded { solution, bound, tolerance, bound_seconds }) => {
+        Ok(bounded) => {
             progress.stage("writing the results");
-            let start = Instant::now();
-            let mut results = Results::new(&folder);
-            write_solution(&mut results, title, &d, &solution, &bound)?;
-            if arguments.dual {
-                write_dual(&mut results, &setup.case, &d, &solution)?;
-            }
-            let output = start.elapsed().as_secs_f64();
-            let seconds = Seconds { bound: bound_seconds, output, ..seconds };
-            let summary = Summary::new(title, &d, tolerance, Ok(&solution), seconds, Some(&bound))
-                .with_unused_groups(&setup.groups);
-            results.write(SUMMARY, |out| summary.write(out))?;
-            results.publish()?;
+            let summary = write_results(&setup, &d, &bounded, seconds, (&folder, &clock), arguments.dual)?;
             drop(progress);
             if !arguments.case.quiet {
-                let table = table(&summary, solution.statistics().polish, &folder, arguments.dual);
+                let unloaded = d.load().iter().flatten().all(|&load| load == 0.0);
+                let polish = bounded.solution.statistics().polish;
+                let table = table(&summary, polish, unloaded, folder.path(), arguments.dual);
                 print(&(table + &unused_groups(&setup.groups)))?;
             }
             Ok(())
         }
         Err(AccuracyError::Rejected(rejected, tolerance)) => {
-            let summary = Summary::new(title, &d, tolerance, Err(&rejected), seconds, None)
+            let summary = Summary::new(&setup.case.title, &d, tolerance, Err(&rejected), seconds, None)
                 .with_unused_groups(&setup.groups);
             Err(reject(&setup.name, &folder, &summary, &rejected))
         }
@@ -88,34 +70,78 @@ pub(super) fn run(arguments: &SolveArguments, watch: &Watch) -> Result<(), Failu
     }
 }
 
-/// What to do when the solver does not come back in time.
+/// Solves, and bounds the error, in the time that there is.
+fn solve(
+    setup: &Setup,
+    d: &Discretization,
+    seconds: Seconds,
+    clock: &Clock,
+    (folder, watch): (&Folder, &Watch),
+    progress: &Progress,
+) -> Result<Bounded, AccuracyError> {
+    let settings = &setup.case.solver;
+    let unknowns = grouped(2 * d.interior().len());
+    progress.stage(format!("{} solves for {unknowns} unknowns", settings.backend.as_str()));
+    let give_up = Arc::new(too_late(setup, d, folder, seconds));
+    let of_run = Arc::clone(&give_up);
+    clock.watch(watch, move || of_run());
+    let mut solver = watch.over(solver(settings.backend), move || give_up());
+    let domain = setup.case.domain();
+    solve_bounded(&setup.case.problem, domain, d, &mut *solver, &options(settings), settings.tolerance)
+}
+
+/// Writes what is certified: the solution in any case, the rest if there is time.
+fn write_results(
+    setup: &Setup,
+    d: &Discretization,
+    bounded: &Bounded,
+    seconds: Seconds,
+    (folder, clock): (&Folder, &Clock),
+    dual: bool,
+) -> Result<Summary, Failure> {
+    let start = Instant::now();
+    let title = &setup.case.title;
+    let Bounded { solution, bound, tolerance, bound_seconds } = bounded;
+    let mut results = folder.results(Part::Solution);
+    let mut left_out = Vec::new();
+    if dual {
+        left_out.extend(write_dual(&mut results, &setup.case, d, solution, clock)?);
+    }
+    left_out.extend(write_solution(&mut results, title, d, solution, bound, clock)?);
+    let output = start.elapsed().as_secs_f64();
+    let seconds = Seconds { bound: *bound_seconds, output, ..seconds };
+    let mut summary = Summary::new(title, d, *tolerance, Ok(solution), seconds, Some(bound));
+    summary.left_out = left_out;
+    results.write(SUMMARY, |out| summary.write(out))?;
+    results.publish()?;
+    Ok(summary)
+}
+
+/// What to do when the solver, or the bound after it, does not come back in time.
 fn too_late(
     setup: &Setup,
     d: &Discretization,
-    folder: &Path,
+    folder: &Folder,
     seconds: Seconds,
 ) -> impl Fn() -> Failure + Send + Sync + 'static {
     let settings = &setup.case.solver;
     let statistics = Statistics {
         status: Status::TimeLimit,
-        solve_seconds: settings.time_limit.unwrap_or_default(),
+        solve_seconds: settings.time_limit.map_or(0.0, TimeLimit::seconds),
         ..Statistics::of(settings.backend.as_str())
     };
     let rejected = Rejected::without_result(statistics);
     let tolerance = settings.tolerance.or_default();
     let summary = Summary::new(&setup.case.title, d, tolerance, Err(&rejected), seconds, None)
         .with_unused_groups(&setup.groups);
-    let (name, folder) = (setup.name.clone(), folder.to_path_buf());
+    let (name, folder) = (setup.name.clone(), folder.clone());
     move || reject(&name, &folder, &summary, &rejected)
 }
 
-/// Writes the summary of a run without a solution, and says why there is none.
-fn reject(name: &str, folder: &Path, summary: &Summary, rejected: &Rejected) -> Failure {
-    // What an earlier run left is not the solution of this one.
-    for file in [SUMMARY, SOLUTION, PICTURE, DUAL, MESH_PICTURE, FLUX] {
-        let _ = remove(&folder.join(file));
-    }
-    let mut results = Results::new(folder);
+/// Writes the summary of a run without a solution, and says why there is none. What an earlier run left is not the solution of
+/// this one, and goes.
+fn reject(name: &str, folder: &Folder, summary: &Summary, rejected: &Rejected) -> Failure {
+    let mut results = folder.results(Part::Solution);
     let written = results.write(SUMMARY, |out| summary.write(out)).and_then(|()| results.publish());
     if let Err(failure) = written {
         return failure;
@@ -125,7 +151,7 @@ fn reject(name: &str, folder: &Path, summary: &Summary, rejected: &Rejected) -> 
 }
 
 /// Arguments come before the case file.
-fn override_settings(setup: &mut Setup, arguments: &SolveArguments) {
+fn override_settings(setup: &mut Setup, arguments: &SolveArguments, clock: &Clock) {
     let settings = &mut setup.case.solver;
     if let Some(backend) = arguments.backend {
         settings.backend = backend;
@@ -133,51 +159,53 @@ fn override_settings(setup: &mut Setup, arguments: &SolveArguments) {
     if let Some(tolerance) = arguments.tolerance {
         settings.tolerance = tolerance;
     }
-    settings.time_limit = arguments.time_limit.or(settings.time_limit);
+    settings.time_limit = clock.of_solver(settings.time_limit);
     settings.polish &= !arguments.no_polish;
 }
 
-/// `solution.vtu` and `membranes.png`.
-pub(super) fn write_solution(
-    results: &mut Results,
-    title: &str,
-    d: &Discretization,
-    solution: &ContactSolution,
-    bound: &ErrorBound,
-) -> Result<(), Failure> {
-    results.write(SOLUTION, |out| write_vtu(d.mesh(), solution, bound, out))?;
-    let picture = Picture::of(title, d.mesh(), solution);
-    let png = render(&picture).map_err(|error| Failure::Input(format!("{PICTURE}: {error}")))?;
-    results.write(PICTURE, |out| out.write_all(&png))
-}
-
 /// The dual mesh `D_h`, with the action as the piecewise constant that it is, and as Figure 1 of the paper; the fluxes
-/// on `S_h`.
+/// on `S_h`. What there is no time for is returned.
 fn write_dual(
     results: &mut Results,
     case: &CaseFile,
     d: &Discretization,
     solution: &ContactSolution,
-) -> Result<(), Failure> {
+    clock: &Clock,
+) -> Result<Vec<&'static str>, Failure> {
     let bad_input = |name: &str, error: &dyn std::fmt::Display| Failure::Input(format!("{name}: {error}"));
     let mesh = d.mesh();
+    if !clock.allows(0.0) {
+        return Ok(vec![DUAL, FLUX, MESH]);
+    }
     let sub = SubTriangulation::new(mesh).map_err(|error| bad_input(DUAL, &error))?;
     let dual = DualMesh::new(mesh, &sub);
     results.write(DUAL, |out| write_dual_vtu(&dual, solution, out))?;
 
-    let picture = MeshPicture { title: &case.title, mesh, dual: &dual, contact: Some(solution.contact()) };
-    let png = render_mesh(&picture).map_err(|error| bad_input(MESH_PICTURE, &error))?;
-    results.write(MESH_PICTURE, |out| out.write_all(&png))?;
-
+    if !clock.allows(0.0) {
+        return Ok(vec![FLUX, MESH]);
+    }
     let [f1, f2] = case.problem.load();
     let load = |f| element_loads(mesh, f).map_err(|error| bad_input(FLUX, &error));
     let reconstructor = Reconstructor::new(d, &sub, [load(f1)?, load(f2)?]);
     let fluxes = reconstructor.reconstruct(solution.displacement(), Reconstruction::Full);
-    results.write(FLUX, |out| write_flux_vtu(&sub, &fluxes, solution, out))
+    results.write(FLUX, |out| write_flux_vtu(&sub, &fluxes, solution, out))?;
+
+    let (title, mesh, contact) = (case.title.clone(), Arc::clone(mesh), solution.contact().to_vec());
+    let picture = clock.in_time(move || {
+        let picture = MeshPicture { title: &title, mesh: &mesh, dual: &dual, contact: Some(&contact) };
+        render_mesh(&picture).map_err(|error| error.to_string())
+    });
+    write_picture(results, MESH, picture)
 }
 
 /// The summary for the eye.
-fn table(summary: &Summary, polish: Option<PolishReport>, folder: &Path, dual: bool) -> String {
+fn table(
+    summary: &Summary,
+    polish: Option<PolishReport>,
+    unloaded: bool,
+    folder: &Path,
+    dual: bool,
+) -> String {
     let number = |value: Option<f64>| value.map_or_else(String::new, |value| fixed(value, 8));
     let interior = summary.unknowns / 2;
     let contact = summary.contact_vertices.unwrap_or(0);
@@ -187,10 +215,11 @@ fn table(summary: &Summary, polish: Option<PolishReport>, folder: &Path, dual: b
             .fold(r.variational_inequality, f64::max)
     });
     let seconds = &summary.seconds;
-    let mut files = vec![SOLUTION, SUMMARY, PICTURE];
+    let mut files = vec![SOLUTION, SUMMARY, MEMBRANES];
     if dual {
-        files.extend([DUAL, FLUX, MESH_PICTURE]);
+        files.extend([DUAL, FLUX, MESH]);
     }
+    files.retain(|name| !summary.left_out.contains(name));
     let files = files.join(", ");
     let rows = [
         (
@@ -213,7 +242,7 @@ fn table(summary: &Summary, polish: Option<PolishReport>, folder: &Path, dual: b
                 summary.tolerance
             ),
         ),
-        ("error", error_line(summary)),
+        ("error", error_line(summary, unloaded)),
         ("warning", summary.warnings.join("; ")),
         ("energy", number(summary.energy)),
         (
@@ -237,6 +266,7 @@ fn table(summary: &Summary, polish: Option<PolishReport>, folder: &Path, dual: b
                 seconds.output
             ),
         ),
+        ("left out", left_out_line(&summary.left_out)),
         ("files", format!("{}/{{{files}}}", folder.display())),
     ];
     let rows: Vec<_> = rows.into_iter().filter(|(_, value)| !value.is_empty()).collect();
@@ -258,14 +288,16 @@ fn solver_line(summary: &Summary) -> String {
     format!("{backend}: {status} in {iterations} iterations{on_levels}")
 }
 
-fn error_line(summary: &Summary) -> String {
+/// Where nothing is loaded, membranes at rest have no energy to compare the bound with.
+fn error_line(summary: &Summary, unloaded: bool) -> String {
     let Some(bound) = summary.error_bound else { return String::new() };
     let relative = match summary.relative_error_bound {
         Some(relative) if summary.warnings.is_empty() => {
             format!("{:.2} %, guaranteed up to the quadrature of the loads", 100.0 * relative)
         }
         Some(relative) => format!("{:.2} %, if the loads are as the quadrature sees them", 100.0 * relative),
-        None => "over half of it: refine".into(),
+        None if unloaded => "nothing is loaded: rounding".into(),
+        None => "more than half of it: refine".into(),
     };
     format!("at most {bound:.3e} in the energy norm ({relative})")
 }

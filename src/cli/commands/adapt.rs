@@ -2,31 +2,29 @@
 
 use std::io::{self, BufReader};
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Instant;
 
-use super::args::AdaptArguments;
-use super::case_file::BackendName;
-use super::clock::Clock;
-use super::input::{self, Input};
-use super::levels::{GOES_ON, KEPT, Levels, MEMORY, TIME, failure, origin};
-use super::memory::Memory;
-use super::progress::Progress;
-use super::setup::{Results, Setup, make_folder, options, solver, unused_groups, write_file};
-use super::solve::{PICTURE as MEMBRANES, SOLUTION, SUMMARY, write_solution};
-use super::terminal::{grouped, print};
-use super::watch::Watch;
-use super::{CaseFile, Failure};
+use super::solution::{A_SOLUTION, left_out_line, write_picture, write_solution};
+use crate::action::ContactSolution;
+use crate::cli::args::AdaptArguments;
+use crate::cli::case::{BackendName, CaseFile};
+use crate::cli::failure::Failure;
+use crate::cli::run::clock::Clock;
+use crate::cli::run::files::{CHECKPOINT, HISTORY, LEVELS, MEMBRANES, MESH, Part, SOLUTION, SUMMARY};
+use crate::cli::run::folder::{Claim, Folder};
+use crate::cli::run::input::{self, Input};
+use crate::cli::run::levels::{GOES_ON, KEPT, Levels, MEMORY, TIME, failure, settings, too_late};
+use crate::cli::run::memory::Memory;
+use crate::cli::run::progress::Progress;
+use crate::cli::run::setup::{Setup, options, solver, too_early, unused_groups};
+use crate::cli::run::watch::Watch;
+use crate::cli::terminal::{grouped, print};
 use crate::estimate::LoadWarning;
-use crate::mesh::{DualMesh, MeshError, SubTriangulation};
+use crate::mesh::{DualMesh, Mesh, MeshError, SubTriangulation};
 use crate::output::{Seconds, Summary, read_checkpoint, write_checkpoint};
 use crate::pictures::{MeshPicture, RatesPicture, Series, render_rates, render_triangulation};
 use crate::study::{AdaptiveLevel, AdaptiveStudy, StudyError, exponent};
-
-const TABLE: &str = "adapt.csv";
-const ORIGIN: &str = "adapt.toml";
-const CHECKPOINT: &str = "checkpoint.npz";
-const PICTURE: &str = "adapt.png";
-const MESH: &str = "mesh.png";
 
 /// The slope of the best possible rate: the error falls like the root of the number of vertices.
 const OPTIMAL: [f64; 1] = [-0.5];
@@ -51,25 +49,26 @@ enum Stop {
     TooSmall(MeshError),
 }
 
-pub(super) fn run(arguments: &AdaptArguments, watch: &Watch) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &AdaptArguments, watch: &Watch) -> Result<(), Failure> {
     let clock = Clock::new(arguments.time_limit);
+    clock.watch(watch, too_early(&arguments.case.path));
     let progress = Progress::new(arguments.case.quiet);
     let mut setup = Setup::new(&arguments.case, &progress)?;
     if let Some(backend) = arguments.backend {
         setup.case.solver.backend = backend;
     }
-    let folder = arguments.case.output_folder(arguments.out.as_ref());
     setup.check_memory(setup.case.solver.backend)?;
-    make_folder(&folder, watch, KEPT)?;
-    let kept = Levels { folder: &folder, table: TABLE, origin: ORIGIN };
-    let origin = origin(&arguments.case, setup.case.solver.backend, &setup.text);
-    let mut levels: Vec<AdaptiveLevel> = kept.so_far(&origin)?;
+    check_first_mesh(&setup, arguments.max_vertices)?;
+    let folder = claim(arguments, &setup, watch)?;
+    let kept = Levels { folder: &folder, table: LEVELS, picture: HISTORY };
+    let mut levels: Vec<AdaptiveLevel> = kept.so_far();
     progress.stage("going on from the last level");
     let (mut study, known) = resumed(&setup, &folder, levels.len())?;
     levels.truncate(known);
 
     let limits = Limits::new(arguments, clock, &setup);
-    clock.watch(watch, &setup.name);
+    let name = setup.name.clone();
+    clock.watch(watch, move || too_late(&name));
     let mut seconds = levels.last().map_or(0.0, |last| last.solve_seconds + last.bound_seconds);
     let stop = loop {
         if let Some(stop) = limits.stop(&levels, seconds) {
@@ -86,7 +85,7 @@ pub(super) fn run(arguments: &AdaptArguments, watch: &Watch) -> Result<(), Failu
         }
         kept.write(&levels)?;
         if let Some(checkpoint) = study.checkpoint() {
-            write_file(&folder.join(CHECKPOINT), |out| write_checkpoint(&checkpoint, out))?;
+            folder.write(CHECKPOINT, |out| write_checkpoint(&checkpoint, out))?;
         }
         seconds = start.elapsed().as_secs_f64();
     };
@@ -95,13 +94,39 @@ pub(super) fn run(arguments: &AdaptArguments, watch: &Watch) -> Result<(), Failu
     if study.solution().is_none() {
         (study, _) = resumed(&setup, &folder, levels.len())?;
     }
-    write_results(&folder, &setup, &study, &levels)?;
+    let left_out = write_results(&folder, &setup, &study, &levels, &clock)?;
     drop(progress);
     if !arguments.case.quiet {
         let warnings = study.solution().map_or(&[][..], |(_, bound)| &bound.warnings);
-        print(&(table(&setup.case.title, &levels, warnings, &folder) + &unused_groups(&setup.groups)))?;
+        let table = table(&setup.case.title, &levels, warnings, folder.path(), &left_out);
+        print(&(table + &unused_groups(&setup.groups)))?;
     }
     verdict(&setup.name, arguments, &stop, &levels)
+}
+
+/// Refuses a budget that the first mesh exceeds already.
+fn check_first_mesh(setup: &Setup, most: usize) -> Result<(), Failure> {
+    let first = setup.family.mesh().points().len();
+    if first <= most {
+        return Ok(());
+    }
+    let [first, most] = [first, most].map(grouped);
+    let problem = format!("the first mesh has {first} vertices, above --max-vertices {most}");
+    Err(Failure::Input(format!("{}: {problem}: allow more, or make it coarser", setup.name)))
+}
+
+/// The folder: levels of other settings stay, and the solution of `solve` for the same case gives way to a better one.
+fn claim(arguments: &AdaptArguments, setup: &Setup, watch: &Watch) -> Result<Folder, Failure> {
+    let path = arguments.output.folder(&arguments.case.path);
+    let claim = |part, settings| Claim {
+        case: &setup.id,
+        part,
+        settings,
+        overwrite: arguments.output.overwrite,
+        says: KEPT,
+    };
+    Folder::claim(&path, &claim(Part::Adapt, settings(setup)), watch)?;
+    Folder::claim(&path, &claim(Part::Solution, A_SOLUTION.into()), watch)
 }
 
 fn study(setup: &Setup) -> AdaptiveStudy {
@@ -118,9 +143,9 @@ fn study(setup: &Setup) -> AdaptiveStudy {
 }
 
 /// The study at the last of `levels` known levels that its checkpoint belongs to, and how many levels that are.
-fn resumed(setup: &Setup, folder: &Path, levels: usize) -> Result<(AdaptiveStudy, usize), Failure> {
+fn resumed(setup: &Setup, folder: &Folder, levels: usize) -> Result<(AdaptiveStudy, usize), Failure> {
     let mut study = study(setup);
-    let path = folder.join(CHECKPOINT);
+    let path = folder.path().join(CHECKPOINT);
     let file = match input::open(&path, Input::Arrays, setup.memory) {
         Ok(file) => file,
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok((study, 0)),
@@ -195,48 +220,71 @@ fn percent(relative: Option<f64>) -> String {
     relative.map_or_else(|| "-".into(), |relative| format!("{:.2} %", 100.0 * relative))
 }
 
-/// The solution on the last mesh as `membranes solve` writes it, that mesh and the errors as pictures.
+/// The solution on the last mesh as `membranes solve` writes it, that mesh and the errors as pictures, if there is time. What
+/// was left out is returned.
 fn write_results(
-    folder: &Path,
+    folder: &Folder,
     setup: &Setup,
     study: &AdaptiveStudy,
     levels: &[AdaptiveLevel],
-) -> Result<(), Failure> {
+    clock: &Clock,
+) -> Result<Vec<&'static str>, Failure> {
     let case = &setup.case;
     let (Some((solution, bound)), Some(d), Some(last)) =
         (study.solution(), study.discretization(), levels.last())
     else {
-        return Ok(());
+        return Ok(Vec::new());
     };
-    let failed = |name: &str, error: &dyn std::fmt::Display| Failure::Input(format!("{name}: {error}"));
     let mesh = study.mesh();
-    let mut results = Results::new(folder);
-    write_solution(&mut results, &case.title, d, solution, bound)?;
+    let mut results = folder.results(Part::Solution);
+    let mut left_out = write_solution(&mut results, &case.title, d, solution, bound, clock)?;
+    left_out.extend(write_picture(&mut results, MESH, mesh_picture(&case.title, mesh, solution, clock))?);
+    left_out.extend(write_picture(&mut results, HISTORY, history(&case.title, levels, clock))?);
     let seconds = Seconds { bound: last.bound_seconds, ..Seconds::default() };
-    let summary = Summary::new(&case.title, d, last.tolerance, Ok(solution), seconds, Some(bound))
+    let mut summary = Summary::new(&case.title, d, last.tolerance, Ok(solution), seconds, Some(bound))
         .with_unused_groups(&setup.groups);
-
-    let sub = SubTriangulation::new(mesh).map_err(|error| failed(MESH, &error))?;
-    let dual = DualMesh::new(mesh, &sub);
-    let picture = MeshPicture { title: &case.title, mesh, dual: &dual, contact: Some(solution.contact()) };
-    let png = render_triangulation(&picture).map_err(|error| failed(MESH, &error))?;
-    results.write(MESH, |out| out.write_all(&png))?;
-
-    let png = render_rates(&RatesPicture {
-        title: &case.title,
-        abscissa: "vertices",
-        h: &levels.iter().map(|level| level.vertices as f64).collect::<Vec<_>>(),
-        series: &[
-            Series { name: "guaranteed bound", values: &values(levels, |level| Some(level.bound)) },
-            Series { name: "true error", values: &values(levels, |level| level.energy_error) },
-            Series { name: "residual estimator", values: &values(levels, |l| Some(l.residual_estimator)) },
-        ],
-        slopes: &OPTIMAL,
-    });
-    let png = png.map_err(|error| failed(PICTURE, &error))?;
-    results.write(PICTURE, |out| out.write_all(&png))?;
+    summary.left_out.clone_from(&left_out);
     results.write(SUMMARY, |out| summary.write(out))?;
-    results.publish()
+    results.publish()?;
+    Ok(left_out)
+}
+
+/// The last mesh with its contact set.
+fn mesh_picture(
+    title: &str,
+    mesh: &Arc<Mesh>,
+    solution: &ContactSolution,
+    clock: &Clock,
+) -> Option<Result<Vec<u8>, String>> {
+    let (title, mesh, contact) = (title.to_owned(), Arc::clone(mesh), solution.contact().to_vec());
+    clock.in_time(move || {
+        let sub = SubTriangulation::new(&mesh).map_err(|error| error.to_string())?;
+        let dual = DualMesh::new(&mesh, &sub);
+        let picture = MeshPicture { title: &title, mesh: &mesh, dual: &dual, contact: Some(&contact) };
+        render_triangulation(&picture).map_err(|error| error.to_string())
+    })
+}
+
+/// The bound, the error and the estimator of all levels.
+fn history(title: &str, levels: &[AdaptiveLevel], clock: &Clock) -> Option<Result<Vec<u8>, String>> {
+    let (title, levels) = (title.to_owned(), levels.to_vec());
+    clock.in_time(move || {
+        let picture = render_rates(&RatesPicture {
+            title: &title,
+            abscissa: "vertices",
+            h: &levels.iter().map(|level| level.vertices as f64).collect::<Vec<_>>(),
+            series: &[
+                Series { name: "guaranteed bound", values: &values(&levels, |level| Some(level.bound)) },
+                Series { name: "true error", values: &values(&levels, |level| level.energy_error) },
+                Series {
+                    name: "residual estimator",
+                    values: &values(&levels, |l| Some(l.residual_estimator)),
+                },
+            ],
+            slopes: &OPTIMAL,
+        });
+        picture.map_err(|error| error.to_string())
+    })
 }
 
 /// What is not known cannot be drawn.
@@ -245,7 +293,13 @@ fn values(levels: &[AdaptiveLevel], of: impl Fn(&AdaptiveLevel) -> Option<f64>) 
 }
 
 /// The history for the eye.
-fn table(title: &str, levels: &[AdaptiveLevel], warnings: &[LoadWarning], folder: &Path) -> String {
+fn table(
+    title: &str,
+    levels: &[AdaptiveLevel],
+    warnings: &[LoadWarning],
+    folder: &Path,
+    left_out: &[&str],
+) -> String {
     let mut text =
         format!("{title}\n  vertices    h min     bound  relative  effectivity  iterations  seconds\n");
     for level in levels {
@@ -266,7 +320,12 @@ fn table(title: &str, levels: &[AdaptiveLevel], warnings: &[LoadWarning], folder
         text += &format!("  the bound falls like vertices^{slope:.2} (later half; -0.50 is the best)\n");
     }
     warnings.iter().for_each(|warning| text += &format!("  warning: {warning}\n"));
-    let files = [SOLUTION, SUMMARY, MEMBRANES, TABLE, PICTURE, MESH].join(", ");
+    if !left_out.is_empty() {
+        text += &format!("  left out: {}\n", left_out_line(left_out));
+    }
+    let mut files = vec![SOLUTION, SUMMARY, MEMBRANES, LEVELS, HISTORY, MESH];
+    files.retain(|name| !left_out.contains(name));
+    let files = files.join(", ");
     text + &format!("  files: {}/{{{files}}}\n", folder.display())
 }
 
