@@ -23,6 +23,7 @@ mod manifest;
 mod plate;
 #[cfg(feature = "cli")]
 mod program;
+mod quadrature;
 #[cfg(feature = "cli")]
 mod readme;
 mod resume;
