@@ -33,6 +33,7 @@ const TURN_ROUNDING: f64 = 1e-9;
 
 /// Why points and triangles are not a triangulation. Vertices and triangles are counted from 0.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum MeshError {
     /// There is nothing to solve on.
     #[error("the mesh has no triangle: export the surface, not only its boundary")]

@@ -18,6 +18,7 @@ pub(crate) const MAX_VERTICES: f64 = 5e7;
 
 /// How fine a mesh to make.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum MeshSize {
     /// A structured mesh with this number of cells along the shorter side of a rectangle, the half width of an
     /// L-shape, or the radius of a disk.
@@ -38,6 +39,7 @@ pub enum MeshSize {
 
 /// Why a mesh cannot be made.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum GenerateError {
     /// No cells.
     #[error("cells is 0: give at least 1")]

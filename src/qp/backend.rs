@@ -58,6 +58,7 @@ pub struct QpSolution {
 
 /// Why a solver stopped, in its own view. Whether the result is accepted is decided by residuals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub enum Status {
     /// It reached the tolerance.
     Solved,
