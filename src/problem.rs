@@ -127,6 +127,7 @@ impl ContactProblemBuilder {
 
 /// Why the data do not make a problem.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum ProblemError {
     /// A tension out of range.
     #[error("tension mu{membrane} is {}: give a positive, finite number", Number(*value))]

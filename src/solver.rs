@@ -224,6 +224,7 @@ impl From<NotFactored> for SolverError {
 
 /// A solver cannot run.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum SolverError {
     /// The quadratic programming backend cannot.
     #[error(transparent)]

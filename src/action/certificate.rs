@@ -77,6 +77,7 @@ impl Rejected {
 
 /// Why a candidate is rejected.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum Reason {
     /// A residual is too large.
     #[error("{check} {value:.1e} is above the tolerance {tolerance:.1e}")]

@@ -1,5 +1,7 @@
 //! A load triangle by triangle: what load vectors and error bounds need of it.
 
+use std::ops::Range;
+
 use crate::parallel::prelude::*;
 
 use super::CutRule;
@@ -43,20 +45,19 @@ impl LoadMoments {
             return Ok(Self::Constant(value));
         }
         let triangles = mesh.triangles().len();
-        let second_rule = SecondRule::new((0..triangles).map(|t| mesh.triangle_area(t)).sum());
+        let blocks = || (0..triangles.div_ceil(BLOCK)).into_par_iter();
+        let area_of = |block: usize| triangles_of(mesh, block).map(|t| mesh.triangle_area(t)).sum();
+        let areas: Vec<f64> = blocks().map(area_of).collect();
+        let second_rule = SecondRule::new(areas.iter().sum());
         // Collected before errors are looked for, so that the first in the order of the triangles is named.
-        let blocks: Vec<_> = (0..triangles.div_ceil(BLOCK))
-            .into_par_iter()
-            .map(|block| on_block(mesh, block, f, &second_rule))
-            .collect();
+        let blocks: Vec<_> = blocks().map(|block| on_block(mesh, block, f, &second_rule)).collect();
         let (mut moments, mut means) = (Vec::with_capacity(triangles), Vec::with_capacity(triangles));
         let mut excess_sq = 0.0;
         for block in blocks {
-            for (on_triangle, beyond) in block? {
-                excess_sq += poincare(mesh.diameter_sq(moments.len()).sqrt()).powi(2) * beyond.excess_sq;
-                moments.push(on_triangle);
-                means.push(beyond.mean);
-            }
+            let block = block?;
+            moments.extend(block.moments);
+            means.extend(block.means);
+            excess_sq += block.excess_sq;
         }
         Ok(Self::Varying { moments, difference: excess_sq.sqrt() + dual_norm(mesh, &means) })
     }
@@ -189,14 +190,23 @@ impl<'a> Samples<'a> {
     }
 }
 
+/// What is found on a block of triangles.
+#[derive(Default)]
+struct Block {
+    moments: Vec<ElementMoments>,
+    /// What the second rule finds: the means of `f - p`, and the sum of `(h_K / pi)^2` times the rest.
+    means: Vec<f64>,
+    excess_sq: f64,
+}
+
 /// The moments on one block of triangles.
 fn on_block(
     mesh: &Mesh,
     block: usize,
     f: &Function,
     second_rule: &SecondRule,
-) -> Result<Vec<(ElementMoments, Beyond)>, EvaluationError> {
-    let triangles = block * BLOCK..((block + 1) * BLOCK).min(mesh.triangles().len());
+) -> Result<Block, EvaluationError> {
+    let triangles = triangles_of(mesh, block);
     let (mut first, mut second) = (Values::default(), Values::default());
     for t in triangles.clone() {
         first.add_points(mesh.corners(t), DEGREE_4.points);
@@ -220,7 +230,19 @@ fn on_block(
         let moments = ElementMoments::new(area, &along_jumps.of(corners, f, &cut)?);
         Ok((moments, moments.beyond(area, &along_jumps.of(corners, f, &shallower)?)))
     };
-    triangles.map(&mut on_triangle).collect()
+    let mut found = Block::default();
+    for t in triangles {
+        let (moments, Beyond { mean, excess_sq }) = on_triangle(t)?;
+        found.moments.push(moments);
+        found.means.push(mean);
+        found.excess_sq += poincare(mesh.diameter_sq(t).sqrt()).powi(2) * excess_sq;
+    }
+    Ok(found)
+}
+
+/// The triangles of a block.
+fn triangles_of(mesh: &Mesh, block: usize) -> Range<usize> {
+    block * BLOCK..((block + 1) * BLOCK).min(mesh.triangles().len())
 }
 
 /// A function at many points.

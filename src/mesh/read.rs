@@ -11,6 +11,7 @@ use crate::formats::read_regular;
 
 /// Why a mesh file cannot be used. The messages do not repeat the file's name.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum ReadError {
     /// The file cannot be read.
     #[error("cannot read the mesh file: {0}")]

@@ -68,6 +68,7 @@ impl<'a> Picture<'a> {
 
 /// Why no picture could be drawn.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum PictureError {
     /// The mesh is empty.
     #[error("picture: the mesh has no triangles; pass at least one")]

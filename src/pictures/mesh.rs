@@ -51,6 +51,7 @@ pub struct MeshPicture<'a> {
 
 /// Why a mesh could not be drawn.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum MeshPictureError {
     /// The dual mesh belongs to another mesh.
     #[error(

@@ -55,6 +55,7 @@ pub struct Series<'a> {
 
 /// Why rates could not be drawn.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum RatesPictureError {
     /// A series has the wrong length.
     #[error("rates picture: {name:?} has {found} values for {expected} levels; pass one per level")]

@@ -29,6 +29,7 @@ use parameter::{Values, listed};
 
 /// A problem with a known solution. The name in a case file stands in brackets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Case {
     /// Unit disk, constant data, contact in a smaller disk (`disk`).
     Disk,

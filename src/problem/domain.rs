@@ -6,6 +6,7 @@ use crate::geometry::ring_area;
 
 /// The shape on which the two membranes are stretched. Lengths are in the unit of the coordinates.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum Domain {
     /// `(lower[0], upper[0]) x (lower[1], upper[1])`.
     Rectangle {

@@ -115,6 +115,7 @@ impl PartialEq for Expression {
 
 /// Why a source is no [`Expression`]. Columns count the characters of the source from 1.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[non_exhaustive]
 pub enum ExpressionError {
     /// Nothing but white space.
     #[error("the expression is empty; write a formula in x and y, such as `1 + x*y`")]

@@ -59,6 +59,7 @@ pub struct QpSolution {
 /// Why a solver stopped, in its own view. Whether the result is accepted is decided by residuals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub enum Status {
     /// It reached the tolerance.
     Solved,

@@ -69,6 +69,7 @@ impl fmt::Display for Shape {
 
 /// Why a file is no answer.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum AnswerError {
     /// It cannot be read.
     #[error("{0}")]

@@ -197,6 +197,7 @@ fn check_finite(name: &'static str, values: &[f64]) -> Result<(), QpError> {
 
 /// Why data do not make a quadratic program.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum QpError {
     /// A matrix of the wrong shape.
     #[error("{name} is {} x {}, but q and b ask for {} x {}", found.0, found.1, expected.0, expected.1)]

@@ -62,6 +62,7 @@ pub struct Bounded {
 
 /// There is no certified solution with a bound.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum AccuracyError {
     /// The solver cannot run.
     #[error(transparent)]

@@ -29,6 +29,7 @@ pub struct ConvergenceStudy {
 
 /// A level of a study fails.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum StudyError {
     /// The data make no problem.
     #[error(transparent)]

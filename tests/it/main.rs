@@ -11,7 +11,6 @@ mod bench;
 mod cones;
 mod custom_backend;
 mod exact;
-#[cfg(feature = "cli")]
 mod folders;
 mod hostile_numbers;
 mod invariance;
@@ -20,6 +19,7 @@ mod manifest;
 mod mesh_files;
 mod plate;
 mod program;
+mod quadrature;
 mod readme;
 mod resume;
 mod same_bytes;

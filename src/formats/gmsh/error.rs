@@ -24,6 +24,7 @@ impl fmt::Display for Place {
 
 /// Why a Gmsh file cannot be used. Every message is one line and says what to do.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum GmshError {
     /// No `$MeshFormat` before the mesh.
     #[error(

@@ -8,6 +8,7 @@ use crate::text::Number;
 
 /// Why points and triangles are not a triangulation. Vertices and triangles are counted from 0.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum MeshError {
     /// There is nothing to solve on.
     #[error("the mesh has no triangle: export the surface, not only its boundary")]

@@ -12,6 +12,7 @@ pub(super) const MAX_MIN_ANGLE: f64 = 30.0;
 
 /// Why a mesh cannot be made.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum GenerateError {
     /// No cells.
     #[error("cells is 0: give at least 1")]
