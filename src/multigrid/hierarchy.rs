@@ -29,7 +29,7 @@ use crate::parallel::prelude::*;
 use coarsening::coarsened;
 use galerkin::galerkin;
 use matrix::{BLOCK, compact_stiffness, reordered};
-use ordering::{banded_order, is_banded};
+use ordering::{banded_order, inverse, is_banded};
 
 /// An entry below this fraction of the diagonal does not couple two rows: rounding of a Galerkin product.
 const UNCOUPLED: f64 = 1e-10;
@@ -310,12 +310,4 @@ fn composed(order: Option<&[u32]>, rows: Vec<u32>) -> Vec<u32> {
         Some(order) => rows.into_iter().map(|row| order[row as usize]).collect(),
         None => rows,
     }
-}
-
-fn inverse(order: &[u32]) -> Vec<u32> {
-    let mut position = vec![0; order.len()];
-    for (i, &old) in order.iter().enumerate() {
-        position[old as usize] = i as u32;
-    }
-    position
 }

@@ -4,9 +4,7 @@ use sprs::CsMat;
 
 use crate::parallel::prelude::*;
 
-use super::galerkin::RowSum;
-use super::inverse;
-use super::runs::{LONGEST, Runs};
+use super::ordering::inverse;
 use crate::mesh::VertexKind;
 
 /// Rows that are made together.
@@ -87,30 +85,9 @@ impl Values {
         sum
     }
 
-    /// Likewise for the rows of a run.
-    #[inline(always)]
-    pub(crate) fn off_diagonal_products<'p>(
-        &self,
-        (pattern, runs): (&Pattern, &Runs),
-        run: usize,
-        x: &[f64],
-        products: &'p mut [f64; LONGEST],
-    ) -> &'p [f64] {
-        let rows = runs.rows(run);
-        let products = &mut products[..rows.len()];
-        if self.shared[run] {
-            self.stencil_products(pattern, rows.start, x, products);
-        } else {
-            for (product, i) in products.iter_mut().zip(rows) {
-                *product = self.off_diagonal_product(pattern, i, x);
-            }
-        }
-        products
-    }
-
     /// For rows that have the entries of the `first` one, each in the next column.
     #[inline(always)]
-    fn stencil_products(&self, pattern: &Pattern, first: usize, x: &[f64], products: &mut [f64]) {
+    pub(super) fn stencil_products(&self, pattern: &Pattern, first: usize, x: &[f64], products: &mut [f64]) {
         let range = pattern.range(first);
         let (mut columns, mut values) = (&pattern.column[range.clone()], &self.off_diagonal[range]);
         let rows = products.len();
@@ -144,12 +121,12 @@ impl Values {
         self.replaced[run]
     }
 
-    /// Replaces the row `i` by a sum whose columns are in the pattern.
-    pub(crate) fn set_row(&mut self, pattern: &Pattern, i: usize, sum: &RowSum) {
+    /// Replaces the entries of the row `i`, whose columns stay.
+    pub(crate) fn set_row(&mut self, pattern: &Pattern, i: usize, entry: impl Fn(usize) -> f64) {
         for (&j, value) in pattern.row(i).iter().zip(&mut self.off_diagonal[pattern.range(i)]) {
-            *value = sum.at(j as usize);
+            *value = entry(j as usize);
         }
-        self.diagonal[i] = sum.at(i);
+        self.diagonal[i] = entry(i);
         self.inverse[i] = reciprocal(self.diagonal[i]);
     }
 }

@@ -102,3 +102,12 @@ fn walk<'n>(from: u32, around: &impl Fn(u32) -> &'n [u32], seen: &mut [bool], or
         at += 1;
     }
 }
+
+/// Where each of the numbers `0..n` stands in an order of them.
+pub(super) fn inverse(order: &[u32]) -> Vec<u32> {
+    let mut position = vec![0; order.len()];
+    for (i, &old) in order.iter().enumerate() {
+        position[old as usize] = i as u32;
+    }
+    position
+}

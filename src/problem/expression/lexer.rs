@@ -1,6 +1,6 @@
 //! Cuts a source into numbers, names and symbols.
 
-use super::ExpressionError;
+use super::error::ExpressionError;
 use super::program::Instruction;
 use crate::text::excerpt;
 

@@ -4,7 +4,7 @@
 
 use std::f64::consts::PI;
 
-use super::ExpressionError;
+use super::error::ExpressionError;
 use super::lexer::{Level, Lexeme, Lexer, Token};
 use super::program::{Builder, Instruction, Program};
 use crate::text::meant;
