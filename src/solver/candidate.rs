@@ -51,3 +51,8 @@ impl StartingPoint {
             && self.multiplier.len() == d.interior().len()
     }
 }
+
+/// `x = (u1, u2)` at the interior vertices.
+pub(super) fn unknowns(d: &Discretization, displacement: &[Vec<f64>; 2]) -> Vec<f64> {
+    displacement.iter().flat_map(|u| d.interior().iter().map(|&a| u[a])).collect()
+}

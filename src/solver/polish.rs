@@ -7,8 +7,7 @@
 use std::time::Instant;
 
 use super::active_set::{Limits, guess, settle};
-use super::candidate::Candidate;
-use super::qp_solver::unknowns;
+use super::candidate::{Candidate, unknowns};
 use super::statistics::PolishReport;
 use crate::discretization::Discretization;
 use crate::qp::{KktResiduals, QpProblem, Status};

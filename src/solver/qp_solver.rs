@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use super::candidate::unknowns;
 use super::polish::polish;
 use super::{Candidate, ContactSolver, SolverError, SolverOptions, Statistics};
 use crate::discretization::Discretization;
@@ -58,11 +59,6 @@ fn qp_options(d: &Discretization, options: &SolverOptions, begin: Instant) -> Qp
         time_limit: options.time_limit.map(|limit| limit.left_since(begin).unwrap_or(TimeLimit::SHORTEST)),
         warm_start,
     }
-}
-
-/// `x = (u1, u2)` at the interior vertices.
-pub(super) fn unknowns(d: &Discretization, displacement: &[Vec<f64>; 2]) -> Vec<f64> {
-    displacement.iter().flat_map(|u| d.interior().iter().map(|&a| u[a])).collect()
 }
 
 /// Has the problem solved in units of size 1, so that one tolerance fits every mesh (`q ~ h^2`) and all data.
