@@ -118,7 +118,7 @@ impl Residuals {
         }
     }
 
-    /// The largest of the checks beyond rounding: what is held against the tolerance.
+    /// The largest of the checks beyond rounding: what is compared with the tolerance.
     pub fn beyond_rounding(&self) -> f64 {
         self.named().into_iter().map(|(_, residual)| residual.beyond_rounding).fold(0.0, f64::max)
     }

@@ -180,7 +180,7 @@ fn nan_and_infinity_never_pass() {
 }
 
 #[test]
-fn an_early_stop_is_seen_and_mended_by_the_polish() {
+fn an_early_stop_is_seen_and_repaired_by_the_polish() {
     let mesh = mesh();
     let d = Discretization::new(&problem(0.0), mesh.clone()).unwrap();
     let stopped = solve(&d, false, Some(3));

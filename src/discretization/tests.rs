@@ -199,8 +199,8 @@ proptest! {
 fn heights_below_zero_and_loads_without_a_value_are_refused() {
     let mesh = square(4);
     let new = |problem: &ContactProblem| Discretization::new(problem, mesh.clone()).map(|_| ());
-    let mended = problem(1.0, 1.0, 0.5);
-    assert_eq!(new(&mended), Ok(()));
+    let fixed = problem(1.0, 1.0, 0.5);
+    assert_eq!(new(&fixed), Ok(()));
 
     // Below zero inside, the height is not looked at.
     let basin = |depth: f64| {

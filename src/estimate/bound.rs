@@ -174,7 +174,7 @@ impl ErrorBound {
                 oscillation: sums.oscillation_sq.sqrt(),
                 contact: (2.0 * sums.contact).sqrt(),
                 boundary: sums.boundary_sq.sqrt(),
-                algebraic: rest[0].hypot(rest[1]) + (2.0 * sums.overlap).sqrt() + sums.mended_sq.sqrt(),
+                algebraic: rest[0].hypot(rest[1]) + (2.0 * sums.overlap).sqrt() + sums.feasible_sq.sqrt(),
             },
             action,
             indicators,

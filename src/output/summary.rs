@@ -76,7 +76,7 @@ pub struct Summary {
     pub energy_norm: Option<f64>,
     /// The relative residuals; absent when there was nothing to measure.
     pub residuals: Option<ResidualSummary>,
-    /// The largest of them beyond the rounding of the terms that cancel there: what is held against the tolerance.
+    /// The largest of them beyond the rounding of the terms that cancel there: what is compared with the tolerance.
     pub residual_beyond_rounding: Option<f64>,
     /// The physical groups of the mesh file that the run has not used: names, or what they consist of and their numbers.
     pub unused_groups: Vec<String>,

@@ -1,4 +1,4 @@
-//! The choice between our own solvers.
+//! The choice between the built-in solvers.
 
 use std::time::Instant;
 

@@ -175,7 +175,7 @@ mod tests {
             let tight = solve(&mut *solver, Tolerance::Fixed(1e-10));
             assert!((auto.bound.total / tight.bound.total - 1.0).abs() < 2.0 * FRACTION, "the same bound");
         }
-        // The twin: as loose as it starts, the solver leaves more than that.
+        // The negative test: as loose as it starts, the solver leaves more than that.
         let loose = solve(&mut QpSolver::new(Clarabel), Tolerance::Fixed(LOOSEST));
         assert!(loose.tighter().is_some_and(|tolerance| tolerance < LOOSEST));
     }

@@ -1,4 +1,4 @@
-//! The contract of a QP backend, held against every one of the build.
+//! The contract of a QP backend, checked for every one in the build.
 
 use membrane_contact::action::certify;
 use membrane_contact::discretization::Discretization;

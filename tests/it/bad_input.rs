@@ -1,6 +1,6 @@
 //! Bad input: exit code 2, one line that says what is wrong, where, and the remedy, and nothing is written.
 //!
-//! A fault is a replacement in input that is accepted: that input is the negative twin of every refusal.
+//! A fault is a replacement in input that is accepted: that input is what every refusal is compared with.
 
 use std::fs;
 use std::path::Path;
@@ -431,7 +431,7 @@ fn every_fault_in_a_file_is_refused_in_one_line_and_without_it_the_file_is_accep
 }
 
 #[test]
-fn bad_arguments_are_refused_in_one_line_and_mended_ones_accepted() {
+fn bad_arguments_are_refused_in_one_line_and_corrected_ones_accepted() {
     let folder = folder_with(SQUARE, MESH);
     let write = |name: &str, bytes: &[u8]| fs::write(folder.path().join(name), bytes).unwrap();
     write("file", b"not a folder");
@@ -444,10 +444,10 @@ fn bad_arguments_are_refused_in_one_line_and_mended_ones_accepted() {
     endless.set_len(1 << 30).unwrap();
     fs::create_dir(folder.path().join("folder")).unwrap();
     assert!(!complaints(folder.path(), "cases", &[]).is_empty(), "to be accepted is no refusal");
-    for (bad, says, mended) in BAD_ARGUMENTS {
+    for (bad, says, fixed) in BAD_ARGUMENTS {
         let complaints = complaints(folder.path(), bad, says);
         assert!(complaints.is_empty(), "{bad}: {}", complaints.join("\n"));
-        let run = run(folder.path(), mended);
-        assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""), "{mended}");
+        let run = run(folder.path(), fixed);
+        assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""), "{fixed}");
     }
 }

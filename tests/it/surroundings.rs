@@ -209,7 +209,7 @@ fn a_time_limit_holds_whatever_the_solver_does() {
     let summary = |folder: &TempDir| -> Value {
         serde_json::from_slice(&results(folder.path())["summary.json"]).expect("JSON")
     };
-    // The twin: with time enough, it is solved.
+    // The negative test: with time enough, it is solved.
     let solved = folder_with(&square(512));
     run(solved.path(), "solve case.toml -q --backend multigrid --time-limit 600").success();
     assert!(results(solved.path()).contains_key("solution.vtu"));

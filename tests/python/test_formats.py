@@ -80,7 +80,7 @@ def test_mtx_stores_p_as_symmetric(program: Program, case: Path) -> None:
 
 
 def test_difference_sees_each_coefficient(program: Program, case: Path) -> None:
-    """The negative twin: a flipped force, a halved Hessian, a moved bound, another constant, a missing row."""
+    """The negative test: a flipped force, a halved Hessian, a moved bound, another constant, a missing row."""
     qp = program.problem(case).qp
     wrong = [
         replace(qp, q=-qp.q),

@@ -68,7 +68,7 @@ def test_solver_agrees_with_the_program(program: Program, case: Path, solver: st
 
 
 def test_a_loose_answer_is_found_but_not_accepted(program: Program, case: Path) -> None:
-    """The negative twin: OSQP at its default tolerance reports success all the same."""
+    """The negative test: OSQP at its default tolerance reports success all the same."""
     qp = program.problem(case).qp
     x, y = solve(qp, "osqp", eps_abs=1e-3, eps_rel=1e-3, polishing=False)
     assert not kkt_residuals(qp, x, y).satisfied(KKT_TOLERANCE)

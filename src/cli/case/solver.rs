@@ -36,7 +36,7 @@ pub enum BackendName {
     ActiveSet,
     /// Multigrid on the decoupled problem.
     Multigrid,
-    /// Whichever of our own suits the mesh.
+    /// Whichever built-in solver suits the mesh.
     Auto,
 }
 

@@ -41,7 +41,7 @@ pub(super) struct Sums {
     pub(super) flux_sq: f64,
     pub(super) oscillation_sq: f64,
     /// Of the change that makes the gap non-negative.
-    pub(super) mended_sq: f64,
+    pub(super) feasible_sq: f64,
     /// Of the lift of `g - g_h`, and of what lies beyond the mesh.
     pub(super) boundary_sq: f64,
     /// `|||u_h|||^2`.
@@ -59,7 +59,7 @@ impl Sums {
             overlap: self.overlap + other.overlap,
             flux_sq: self.flux_sq + other.flux_sq,
             oscillation_sq: self.oscillation_sq + other.oscillation_sq,
-            mended_sq: self.mended_sq + other.mended_sq,
+            feasible_sq: self.feasible_sq + other.feasible_sq,
             boundary_sq: self.boundary_sq + other.boundary_sq,
             energy_sq: self.energy_sq + other.energy_sq,
         }
@@ -108,7 +108,7 @@ impl Cells<'_> {
 
     fn on_triangle(&self, k: usize) -> Result<Sums, MeasureError> {
         let (flux_sq, oscillation) = (self.fluxes.distance_sq(k), self.oscillation(k));
-        let (mended_sq, lift) = (self.mended_sq(k), self.trace.lift(k, self.lambda)?);
+        let (feasible_sq, lift) = (self.feasible_sq(k), self.trace.lift(k, self.lambda)?);
         let (contact, overlap) = self.contact(k);
         let mut sums = Sums { contact: contact + lift.action, overlap, ..Sums::default() };
         for (i, mu) in self.d.tension().into_iter().enumerate() {
@@ -117,13 +117,13 @@ impl Cells<'_> {
             let flux_sq = flux_sq[i] / mu;
             let oscillation_sq = oscillation[i].powi(2) / mu;
             let a = flux_sq.sqrt() + oscillation_sq.sqrt();
-            let b = mended_sq[i].sqrt() + lift_sq.sqrt();
+            let b = feasible_sq[i].sqrt() + lift_sq.sqrt();
             sums.indicators_sq[i] = (a + b).powi(2) + beyond_sq;
             sums.products += a * b;
             sums.changes_sq[i] = b * b;
             sums.flux_sq += flux_sq;
             sums.oscillation_sq += oscillation_sq;
-            sums.mended_sq += mended_sq[i];
+            sums.feasible_sq += feasible_sq[i];
             sums.boundary_sq += lift_sq + beyond_sq;
             sums.energy_sq += mu * self.seminorm_sq(k, |a| self.displacement[i][a]);
         }
@@ -144,7 +144,7 @@ impl Cells<'_> {
     }
 
     /// `mu_i |c_i|_{H1(K)}^2` for the changes `c_1 = (mu2 / M) w^-` and `c_2 = -(mu1 / M) w^-` that make the gap non-negative.
-    fn mended_sq(&self, k: usize) -> [f64; 2] {
+    fn feasible_sq(&self, k: usize) -> [f64; 2] {
         let overlap = |a: usize| (self.displacement[1][a] - self.displacement[0][a]).max(0.0);
         if self.d.mesh().triangles()[k].iter().all(|&a| overlap(a) == 0.0) {
             return [0.0; 2];

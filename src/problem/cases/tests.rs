@@ -84,7 +84,10 @@ fn the_strip_is_exact_at_the_nodes_of_aligned_meshes() {
     for (x, lambda_h) in [(x0 - h, action), (x0, action / 2.0), (x0 + h, 0.0), (x0 + 2.0 * h, 0.0)] {
         for membrane in [0, 1] {
             assert!(residual(x, lambda_h, membrane).abs() < ROUNDING, "x = {x}, membrane {}", membrane + 1);
-            assert!(residual(x, lambda_h + PLANTED, membrane).abs() > ROUNDING, "the twin at x = {x} passes");
+            assert!(
+                residual(x, lambda_h + PLANTED, membrane).abs() > ROUNDING,
+                "the negative test at x = {x} passes"
+            );
         }
     }
     // The gap alone sees only F = -q, also with the loads taken on the line itself.

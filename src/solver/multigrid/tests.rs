@@ -345,7 +345,7 @@ fn truncated_rows_have_no_part_in_a_stencil() {
     let changed: Vec<u32> = (0..frozen.len() as u32).filter(|&i| frozen[i as usize]).collect();
     truncation.update(finest, &frozen, &changed);
     assert!(defect(truncation.values(finest - 1)) < ROUNDING);
-    // The twin: the rows are changed, but nobody tells the runs.
+    // The negative test: the rows are changed, but nobody tells the runs.
     let mut unaware = level.values.clone();
     unaware.off_diagonal.clone_from(&truncation.values(finest - 1).off_diagonal);
     assert!(defect(&unaware) > 0.1);

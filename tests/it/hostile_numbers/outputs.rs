@@ -176,7 +176,7 @@ fn archive(arrays: &[(&str, &[f64])]) -> Vec<u8> {
     zip.finish().expect("memory is writable").into_inner()
 }
 
-/// The twin: a bound that is no number is seen.
+/// The negative test: a bound that is no number is seen.
 #[test]
 fn a_number_that_is_none_is_seen() {
     let hostile = &super::solvable()[0];

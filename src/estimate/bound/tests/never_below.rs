@@ -30,7 +30,7 @@ fn assert_bounds(name: &str, exact: &ExactSolution, mesh: &Mesh) {
     let bound = bound(&problem, &exact.domain(), &d, solution.displacement());
     let error = energy_error(&d, solution.displacement(), exact);
     assert!(bound.total >= error, "{name}: {} is below {error}", bound.total);
-    // The twin: a third of it is no bound.
+    // The negative test: a third of it is no bound.
     assert!(bound.total <= COARSE * error + ROUNDING, "{name}: {} is far above {error}", bound.total);
 }
 
@@ -66,7 +66,7 @@ fn on_a_disk_whose_height_varies() {
         let found = bound(&problem, &domain, &d, &displacement);
         let error = (2.0 * seminorm_of_difference_sq(&d, &displacement[0])).sqrt();
         assert!(found.total >= error && found.total <= 2.0 * error, "{rings}: {found:?} {error}");
-        // The twin: of the polygon alone, whose trace is another, no more than the flux is known.
+        // The negative test: of the polygon alone, whose trace is another, no more than the flux is known.
         assert!(found.parts.boundary > 0.1 * found.parts.flux, "{:?}", found.parts);
     }
 }
@@ -186,7 +186,7 @@ fn of_displacements_that_do_not_solve_the_problem() {
         let found = bound(&problem, &exact.domain(), &d, &displacement);
         let error = energy_error(&d, &displacement, &exact);
         assert!(found.total >= error, "{name}: {} is below {error}", found.total);
-        // The twin: what the discretisation alone explains is below the error of some of them.
+        // The negative test: what the discretisation alone explains is below the error of some of them.
         algebraic += usize::from(found.parts.discretization() < error);
     }
     assert!(algebraic > 0);
@@ -248,7 +248,7 @@ fn of_membranes_that_pass_through_each_other() {
     let found = bound(&problem, &exact.domain(), &d, &displacement);
     let error = energy_error(&d, &displacement, &exact);
     assert!(found.total >= error, "{} is below {error}", found.total);
-    // The twin: fluxes and loads alone know nothing of it.
+    // The negative test: fluxes and loads alone know nothing of it.
     assert!(found.parts.discretization() < 0.5 * error, "{:?}", found.parts);
 }
 
@@ -265,7 +265,7 @@ fn on_a_disk_up_to_its_circle() {
         let beyond_sq = beyond_the_polygon_sq(&exact, &mesh);
         let error = energy_error(&d, &displacement, &exact).hypot(beyond_sq.sqrt());
         assert!(found.total >= error && found.total <= 1.35 * error, "{}, {error}", found.total);
-        // The twin: a bound on the polygon alone.
+        // The negative test: a bound on the polygon alone.
         let polygon = ErrorBound::new(&problem, None, &d, &displacement).unwrap();
         assert!(polygon.total < error, "{} {error}", polygon.total);
     }
