@@ -136,7 +136,7 @@ fn groups_that_are_not_used_are_named() {
         "$Nodes",
         "$PhysicalNames\n2\n1 3 \"clamped edge\"\n2 1 \"rubber\"\n$EndPhysicalNames\n$Nodes",
     );
-    let line = "physical groups of the mesh that are not used: clamped edge, rubber\n";
+    let line = "physical groups not used: clamped edge, rubber\n";
     let folder = folder_with(CASE, &named);
     for command in ["solve case.toml", "check case.toml", "adapt case.toml --out adapted --tolerance 0.9"] {
         let run = run(folder.path(), command);

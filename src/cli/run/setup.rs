@@ -77,14 +77,18 @@ impl Setup {
 
 /// The groups that a run does not use, in one line for the terminal; nothing where there are none.
 pub(crate) fn unused_groups(groups: &[PhysicalGroup]) -> String {
-    /// More names are no line.
-    const MOST: usize = 6;
-    if groups.is_empty() {
-        return String::new();
+    /// Names are left out where the line would become wider than 80 columns.
+    const WIDEST: usize = 80 - ", and 1000 more".len();
+    let mut line = String::from("  physical groups not used:");
+    for (k, group) in groups.iter().enumerate() {
+        let name = excerpt(&group.to_string());
+        if k > 0 && line.chars().count() + 2 + name.chars().count() > WIDEST {
+            return format!("{line}, and {} more\n", groups.len() - k);
+        }
+        line += if k > 0 { ", " } else { " " };
+        line += &name;
     }
-    let names: Vec<String> = groups.iter().take(MOST).map(|group| excerpt(&group.to_string())).collect();
-    let more = if groups.len() > MOST { format!(" and {} more", groups.len() - MOST) } else { String::new() };
-    format!("  physical groups of the mesh that are not used: {}{more}\n", names.join(", "))
+    if groups.is_empty() { String::new() } else { line + "\n" }
 }
 
 /// The meshes of a case, and what its mesh file calls their parts.
@@ -211,5 +215,22 @@ pub(crate) fn options(settings: &SolverSettings) -> SolverOptions {
         time_limit: settings.time_limit,
         polish: settings.polish,
         warm_start: None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn groups_that_are_not_used_are_one_line_of_80_columns() {
+        let group =
+            |tag: u64| PhysicalGroup { dimension: 1, tag, name: (tag < 3).then(|| "an\nedge".into()) };
+        let line = |tags: std::ops::Range<u64>| unused_groups(&tags.map(group).collect::<Vec<_>>());
+        assert_eq!(line(0..0), "");
+        assert_eq!(line(2..4), "  physical groups not used: an\\nedge, curves 3\n");
+        let many = line(3..1003);
+        assert_eq!(many, "  physical groups not used: curves 3, curves 4, curves 5, and 997 more\n");
+        assert!(many.len() <= 81);
     }
 }
