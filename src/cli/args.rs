@@ -223,7 +223,7 @@ impl OutputArguments {
 #[command(after_help = "\
 For bash, in ~/.bashrc:  source <(membranes completions bash)
 For zsh, in a folder of $fpath:  membranes completions zsh > _membranes
-For fish:  membranes completions fish > ~/.config/fish/completions/membranes.fish")]
+For fish, in its configuration:  membranes completions fish | source")]
 pub(crate) struct CompletionsArguments {
     /// The shell
     #[arg(value_enum)]
