@@ -8,6 +8,7 @@ use thiserror::Error;
 
 use crate::fem::{LoadMoments, stiffness_around};
 use crate::mesh::{Mesh, VertexKind, VertexTriangles};
+use crate::numeric::largest;
 use crate::problem::{ContactProblem, EvaluationError};
 use crate::text::Number;
 
@@ -214,10 +215,8 @@ impl Scales {
         let used = |&a: &usize| mesh.kind()[a] != VertexKind::Unused;
         let density = [0, 1].map(|i| {
             let densities = (0..height.len()).filter(used).map(|a| load[i][a].abs() / dual_area[a]);
-            // Overflow can leave a NaN, which `f64::max` would lose.
-            densities
-                .map(|density| if density.is_nan() { f64::INFINITY } else { density })
-                .fold(0.0, f64::max)
+            // Overflow can leave a NaN.
+            largest(densities)
         });
         let heights =
             || (0..height.len()).filter(|&a| mesh.kind()[a] == VertexKind::Boundary).map(|a| height[a]);

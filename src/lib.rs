@@ -9,6 +9,7 @@
 #![deny(missing_docs)]
 
 mod text;
+mod numeric;
 mod parallel;
 pub mod geometry;
 pub mod problem;

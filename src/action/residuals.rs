@@ -8,6 +8,7 @@ use super::Action;
 use super::sums::sums;
 use crate::discretization::Discretization;
 use crate::mesh::VertexKind;
+use crate::numeric::or_infinite;
 
 /// Vertices that are worked on together.
 const BLOCK: usize = 4096;
@@ -140,7 +141,6 @@ impl Residuals {
 impl Residual {
     /// A defect, and the rounding that is allowed in it.
     fn new(defect: f64, rounding: f64) -> Self {
-        let or_infinite = |x: f64| if x.is_nan() { f64::INFINITY } else { x };
         Self { value: or_infinite(defect), beyond_rounding: or_infinite(defect - rounding) }
     }
 

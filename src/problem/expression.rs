@@ -85,6 +85,11 @@ impl Expression {
         self.program.eval_many(x, y, out);
     }
 
+    /// The value of a formula in which neither `x` nor `y` is left.
+    pub(super) fn constant(&self) -> Option<f64> {
+        self.program.constant()
+    }
+
     /// The text that was parsed.
     pub fn source(&self) -> &str {
         &self.source

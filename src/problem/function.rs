@@ -149,8 +149,9 @@ impl From<f64> for Function {
 }
 
 impl From<Expression> for Function {
+    /// A formula without `x` and `y` is a constant.
     fn from(expression: Expression) -> Self {
-        Self::Expression(expression)
+        expression.constant().map_or(Self::Expression(expression), Self::Constant)
     }
 }
 
@@ -189,6 +190,13 @@ mod tests {
             assert!(f.eval(0.0, 0.0).is_err());
         }
         assert!(Function::Constant(f64::NAN).eval(0.0, 0.0).is_err());
+    }
+
+    #[test]
+    fn a_formula_without_coordinates_is_a_constant() {
+        let of = |text: &str| Function::from(text.parse::<Expression>().unwrap());
+        assert!(matches!(of("-3*(2 + 1)"), Function::Constant(-9.0)));
+        assert!(matches!(of("-3*(2 + x)"), Function::Expression(_)));
     }
 
     #[test]

@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 
 /// The way of the data.
-const LAYERS: [&str; 17] = [
+const LAYERS: [&str; 18] = [
     "text",
+    "numeric",
     "geometry",
     "problem",
     "formats",

@@ -135,8 +135,12 @@ fn exported(d: &Discretization, bounded: &Bounded) -> Result<(), String> {
     let mut qps = Vec::new();
     write_qps(&qp, &mut qps).map_err(|error| format!("problem.qps: {error}"))?;
     let qps = String::from_utf8(qps).map_err(|error| error.to_string())?;
-    let of_qps: Vec<f64> =
-        qps.lines().filter_map(|line| line.trim().split_once(" obj ")).map(|(_, q)| number(q)).collect();
+    let of_objective = qps.lines().filter_map(|line| line.trim().split_once(" obj "));
+    let (constants, columns): (Vec<_>, Vec<_>) = of_objective.partition(|(name, _)| *name == "rhs");
+    if constants.first().map_or(0.0, |(_, minus)| -number(minus)) != qp.constant() {
+        return Err("the constant is not read back as it was".into());
+    }
+    let of_qps: Vec<f64> = columns.into_iter().map(|(_, q)| number(q)).collect();
     let mut mtx = Vec::new();
     write_matrix_market(&qp, QpPart::Q, &mut mtx).map_err(|error| format!("problem_q.mtx: {error}"))?;
     let mtx = String::from_utf8(mtx).map_err(|error| error.to_string())?;
