@@ -5,5 +5,6 @@ pub mod membranes;
 mod mesh;
 mod rates;
 
+pub use drawing::encode::{Drawing, EncodingError, Format};
 pub use mesh::{MeshPicture, MeshPictureError, render_mesh, render_triangulation};
 pub use rates::{RatesPicture, RatesPictureError, Series, Times, TimesPicture, render_rates, render_times};

@@ -3,6 +3,8 @@
 pub(crate) mod axis;
 pub(crate) mod canvas;
 pub(crate) mod color;
+pub(crate) mod encode;
+pub(crate) mod font;
 pub(crate) mod frame;
 pub(crate) mod heading;
 pub(crate) mod log_axis;

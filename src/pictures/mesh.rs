@@ -1,15 +1,20 @@
 //! Figure 1 for any mesh: the triangulation `T_h` and its dual mesh `D_h`.
 
 mod panel;
+mod picture;
+mod sizes;
 mod window;
+
+pub use picture::{MeshPicture, MeshPictureError};
 
 use super::drawing::axis::Axis;
 use super::drawing::canvas::{Anchor, Canvas};
-use super::drawing::color::{DUAL, DUAL_CELL, DUAL_CONTACT, INK, Rgb, TRIANGULATION};
+use super::drawing::color::{DUAL, DUAL_CELL, DUAL_CONTACT, INK, RIM, Rgb, TRIANGULATION};
+use super::drawing::encode::Drawing;
 use super::drawing::frame::{Frame, NORMAL, SMALL};
 use super::drawing::heading::heading;
 use super::drawing::outline::boundary_edges;
-use crate::mesh::{DualMesh, Mesh};
+use sizes::Sizes;
 use window::Window;
 
 /// The longest sides of a domain that is drawn as a whole, in pixels.
@@ -36,86 +41,40 @@ const AXIS_NAME: f64 = 90.0;
 /// The legend needs this width.
 const NARROWEST: usize = 1180;
 
-/// A triangulation with its dual mesh, to be drawn.
-#[derive(Clone, Copy, Debug)]
-pub struct MeshPicture<'a> {
-    /// The heading; what does not fit into two lines is cut off.
-    pub title: &'a str,
-    /// The triangulation `T_h`.
-    pub mesh: &'a Mesh,
-    /// Its dual mesh `D_h`.
-    pub dual: &'a DualMesh,
-    /// Whether the membranes touch at each vertex of the mesh: the dual cells of these are tinted.
-    pub contact: Option<&'a [bool]>,
-}
-
-/// Why a mesh could not be drawn.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum MeshPictureError {
-    /// The dual mesh belongs to another mesh.
-    #[error(
-        "mesh picture: the dual mesh has a cell around vertex {vertex}, but the mesh has {vertices} vertices; pass the dual mesh of this mesh"
-    )]
-    OtherMesh {
-        /// The vertex that is not there.
-        vertex: usize,
-        /// The number of vertices.
-        vertices: usize,
-    },
-    /// The contact set has the wrong length.
-    #[error("mesh picture: contact has {found} values for {expected} vertices; pass one per vertex")]
-    Length {
-        /// How many values it has.
-        found: usize,
-        /// The number of vertices.
-        expected: usize,
-    },
-    /// The image could not be encoded.
-    #[error("mesh picture: cannot encode the image: {0}; free memory and run again")]
-    Encoding(#[from] png::EncodingError),
-}
-
-/// Draws a mesh: the bytes of a PNG file, the same for the same data, as wide and high as the domain needs, at most
+/// Draws a mesh, the same for the same data, as wide and high as the domain needs, at most
 /// 2170 x 1596 pixels. A mesh too fine to be seen as a whole is shown with a part enlarged: at the rim of the contact,
 /// or in the middle. Linear time, but for sorting the edges.
 ///
 /// # Errors
 /// See [`MeshPictureError`].
-pub fn render_mesh(picture: &MeshPicture) -> Result<Vec<u8>, MeshPictureError> {
-    check(picture)?;
+pub fn render_mesh(picture: &MeshPicture) -> Result<Drawing, MeshPictureError> {
+    picture.check()?;
     let whole = Window::whole(picture.mesh, WHOLE);
     let canvas = if whole.spacing >= LEGIBLE || whole.vertices <= VERTICES {
-        alone(picture, &whole, Show::Both)
+        alone(picture, &whole)
     } else {
         let overview = Window::whole(picture.mesh, OVERVIEW);
         let enlarged = Window::enlarged(picture.mesh, VERTICES, ENLARGED, &contact_rim(picture));
-        with_enlarged(picture, &overview, &enlarged)
+        with_enlarged(picture, &overview, &enlarged, None)
     };
-    Ok(canvas.encode()?)
+    Ok(Drawing::new(canvas))
 }
 
-/// Draws all of a triangulation in thin lines over the tints of the contact: the bytes of a PNG file, the same for the same
-/// data. Where triangles are too small to be told apart, it is dark: so it shows where an adaptive mesh is fine.
+/// Draws how fine a triangulation is: all of it, each triangle in the colour of its diameter, the rim of the contact, and
+/// beside it a part enlarged as by [`render_mesh`], at the rim or where the mesh is finest; the same for the same data.
 ///
 /// # Errors
 /// See [`MeshPictureError`].
-pub fn render_triangulation(picture: &MeshPicture) -> Result<Vec<u8>, MeshPictureError> {
-    check(picture)?;
-    Ok(alone(picture, &Window::whole(picture.mesh, WHOLE), Show::Triangulation).encode()?)
-}
-
-fn check(picture: &MeshPicture) -> Result<(), MeshPictureError> {
-    let expected = picture.mesh.points().len();
-    if let Some(&vertex) = picture.dual.vertices().iter().find(|&&a| a >= expected) {
-        return Err(MeshPictureError::OtherMesh { vertex, vertices: expected });
+pub fn render_triangulation(picture: &MeshPicture) -> Result<Drawing, MeshPictureError> {
+    picture.check()?;
+    let sizes = Sizes::of(picture.mesh);
+    let mut around = contact_rim(picture);
+    if around.is_empty() {
+        around = sizes.finest.iter().map(|&a| picture.mesh.points()[a]).collect();
     }
-    match picture.contact {
-        Some(contact) if contact.len() != expected => {
-            Err(MeshPictureError::Length { found: contact.len(), expected })
-        }
-        _ => Ok(()),
-    }
+    let overview = Window::whole(picture.mesh, OVERVIEW);
+    let enlarged = Window::enlarged(picture.mesh, VERTICES, ENLARGED, &around);
+    Ok(Drawing::new(with_enlarged(picture, &overview, &enlarged, Some(&sizes))))
 }
 
 /// The vertices in contact with a neighbour that is not.
@@ -126,43 +85,38 @@ fn contact_rim(picture: &MeshPicture) -> Vec<[f64; 2]> {
     mixed.flatten().filter(|&&a| contact[a]).map(|&a| picture.mesh.points()[a]).collect()
 }
 
-/// Which of the meshes are drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Show {
-    Both,
-    Triangulation,
-}
-
 /// The whole domain.
-fn alone(picture: &MeshPicture, whole: &Window, show: Show) -> Canvas {
+fn alone(picture: &MeshPicture, whole: &Window) -> Canvas {
     let [width, height] = whole.size();
     let size = [(LEFT + width + RIGHT).max(NARROWEST), TOP + height + BOTTOM];
     let mut canvas = Canvas::new(size);
     heading(&mut canvas, picture.title);
-    legend(&mut canvas, picture, show);
+    legend(&mut canvas, picture, None);
     let corner = [LEFT + (size[0] - LEFT - RIGHT - width) / 2, TOP];
     let boundary = boundary_edges(picture.mesh.triangles());
-    let panel = match show {
-        Show::Both => panel::meshes(picture, whole, &boundary),
-        Show::Triangulation => panel::all_triangles(picture, whole, &boundary),
-    };
-    let frame = place(&mut canvas, &panel, whole, corner);
+    let frame = place(&mut canvas, panel::meshes(picture, whole, &boundary), whole, corner);
     left_axis(&mut canvas, frame, whole);
     canvas
 }
 
-/// The domain, and right of it the enlarged part.
-fn with_enlarged(picture: &MeshPicture, overview: &Window, enlarged: &Window) -> Canvas {
+/// The domain, in the colours of `sizes` or of the contact, and right of it the enlarged part.
+fn with_enlarged(
+    picture: &MeshPicture,
+    overview: &Window,
+    enlarged: &Window,
+    sizes: Option<&Sizes>,
+) -> Canvas {
     let [[width, height], [side, _]] = [overview.size(), enlarged.size()];
     let size = [LEFT + width + BETWEEN + side + RIGHT_WITH_AXIS, TOP + side + BOTTOM];
     let mut canvas = Canvas::new(size);
     heading(&mut canvas, picture.title);
-    legend(&mut canvas, picture, Show::Both);
+    legend(&mut canvas, picture, sizes);
     let boundary = boundary_edges(picture.mesh.triangles());
     let corner = [LEFT, TOP + (side - height) / 2];
-    let left = place(&mut canvas, &panel::domain(picture, overview, &boundary), overview, corner);
+    let domain = panel::domain(picture, overview, &boundary, sizes);
+    let left = place(&mut canvas, domain, overview, corner);
     let corner = [LEFT + width + BETWEEN, TOP];
-    let right = place(&mut canvas, &panel::meshes(picture, enlarged, &boundary), enlarged, corner);
+    let right = place(&mut canvas, panel::meshes(picture, enlarged, &boundary), enlarged, corner);
     left_axis(&mut canvas, left, overview);
     right_axis(&mut canvas, right, enlarged);
     mark(&mut canvas, left, overview, right, enlarged);
@@ -175,7 +129,7 @@ fn with_enlarged(picture: &MeshPicture, overview: &Window, enlarged: &Window) ->
 }
 
 /// Puts a drawn window on the canvas, with its horizontal axis: its frame.
-fn place(canvas: &mut Canvas, drawn: &Canvas, window: &Window, corner: [usize; 2]) -> Frame {
+fn place(canvas: &mut Canvas, drawn: Canvas, window: &Window, corner: [usize; 2]) -> Frame {
     canvas.paste(drawn, corner);
     let [[left, top], [width, height]] = [corner, window.size()].map(|pair| pair.map(|x| x as f64));
     let frame = Frame { left, top, width, height };
@@ -229,7 +183,7 @@ fn mark(canvas: &mut Canvas, left: Frame, overview: &Window, right: Frame, enlar
 }
 
 /// What the lines and tints mean, below the title.
-fn legend(canvas: &mut Canvas, picture: &MeshPicture, show: Show) {
+fn legend(canvas: &mut Canvas, picture: &MeshPicture, sizes: Option<&Sizes>) {
     const SAMPLE: f64 = 44.0;
     const GAP: f64 = 14.0;
     const APART: f64 = 44.0;
@@ -244,15 +198,20 @@ fn legend(canvas: &mut Canvas, picture: &MeshPicture, show: Show) {
     };
     line(canvas, x, 1.5 * panel::THIN, TRIANGULATION);
     x = name(canvas, x, &format!("Tₕ: {} triangles", grouped(picture.mesh.triangles().len())));
-    if show == Show::Both {
-        canvas.fill([[x, y - 14.0], [x + SAMPLE, y + 14.0]], DUAL_CELL);
-        line(canvas, x, panel::STRONG, DUAL);
-        x = name(canvas, x, &format!("Dₕ: {} dual cells", grouped(picture.dual.vertices().len())));
-    }
+    canvas.fill([[x, y - 14.0], [x + SAMPLE, y + 14.0]], DUAL_CELL);
+    line(canvas, x, panel::STRONG, DUAL);
+    x = name(canvas, x, &format!("Dₕ: {} dual cells", grouped(picture.dual.vertices().len())));
     if let Some(contact) = picture.contact {
         canvas.fill([[x, y - 14.0], [x + SAMPLE, y + 14.0]], DUAL_CONTACT);
         let count = picture.dual.vertices().iter().filter(|&&a| contact[a]).count();
-        name(canvas, x, &format!("in contact: {}", grouped(count)));
+        x = name(canvas, x, &format!("in contact: {}", grouped(count)));
+    }
+    if let Some(sizes) = sizes {
+        if picture.contact.is_some() {
+            line(canvas, x, panel::RIM_WIDTH, RIM);
+            x = name(canvas, x, "rim of the contact");
+        }
+        sizes.bar(canvas, [x, y]);
     }
 }
 

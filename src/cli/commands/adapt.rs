@@ -23,7 +23,7 @@ use crate::cli::terminal::{grouped, print};
 use crate::estimate::LoadWarning;
 use crate::mesh::{DualMesh, Mesh, MeshError, SubTriangulation};
 use crate::output::{Seconds, Summary, read_checkpoint, write_checkpoint};
-use crate::pictures::{MeshPicture, RatesPicture, Series, render_rates, render_triangulation};
+use crate::pictures::{Drawing, MeshPicture, RatesPicture, Series, render_rates, render_triangulation};
 use crate::study::{AdaptiveLevel, AdaptiveStudy, StudyError, exponent};
 
 /// The slope of the best possible rate: the error falls like the root of the number of vertices.
@@ -255,7 +255,7 @@ fn mesh_picture(
     mesh: &Arc<Mesh>,
     solution: &ContactSolution,
     clock: &Clock,
-) -> Option<Result<Vec<u8>, String>> {
+) -> Option<Result<Drawing, String>> {
     let (title, mesh, contact) = (title.to_owned(), Arc::clone(mesh), solution.contact().to_vec());
     clock.in_time(move || {
         let sub = SubTriangulation::new(&mesh).map_err(|error| error.to_string())?;
@@ -266,7 +266,7 @@ fn mesh_picture(
 }
 
 /// The bound, the error and the estimator of all levels.
-fn history(title: &str, levels: &[AdaptiveLevel], clock: &Clock) -> Option<Result<Vec<u8>, String>> {
+fn history(title: &str, levels: &[AdaptiveLevel], clock: &Clock) -> Option<Result<Drawing, String>> {
     let (title, levels) = (title.to_owned(), levels.to_vec());
     clock.in_time(move || {
         let picture = render_rates(&RatesPicture {

@@ -15,7 +15,7 @@ use crate::cli::run::progress::Progress;
 use crate::cli::run::setup::{Setup, check_refinements, options, solver, too_early, unused_groups};
 use crate::cli::run::watch::Watch;
 use crate::cli::terminal::{grouped, print};
-use crate::pictures::{RatesPicture, Series, render_rates};
+use crate::pictures::{Format, RatesPicture, Series, render_rates};
 use crate::qp::TimeLimit;
 use crate::study::{ConvergenceStudy, LevelErrors, MEASURES, fitted_rate, markdown, rate};
 
@@ -163,7 +163,8 @@ fn write_picture(
         render_rates(&RatesPicture { title: &title, abscissa: "h", h: &h, series: &series, slopes: &SLOPES })
     });
     let Some(png) = picture else { return Ok(false) };
-    let png = png.map_err(|error| Failure::Input(format!("{RATES}: {error}")))?;
+    let failed = |error: &dyn std::fmt::Display| Failure::Input(format!("{RATES}: {error}"));
+    let png = png.map_err(|error| failed(&error))?.encode(Format::Png).map_err(|error| failed(&error))?;
     folder.write(RATES, |out| out.write_all(&png))?;
     Ok(true)
 }

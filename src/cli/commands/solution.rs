@@ -11,6 +11,7 @@ use crate::discretization::Discretization;
 use crate::estimate::ErrorBound;
 use crate::output::write_vtu;
 use crate::pictures::membranes::{Picture, render};
+use crate::pictures::{Drawing, Format};
 
 /// The settings of a folder that holds one. Another mesh, solver, or tolerance for the same case takes the place of the one before.
 pub(super) const A_SOLUTION: &str = "a solution";
@@ -37,9 +38,10 @@ pub(super) fn write_solution(
 pub(super) fn write_picture(
     results: &mut Results,
     name: &'static str,
-    picture: Option<Result<Vec<u8>, String>>,
+    picture: Option<Result<Drawing, String>>,
 ) -> Result<Vec<&'static str>, Failure> {
-    let Some(png) = picture else { return Ok(vec![name]) };
+    let Some(drawing) = picture else { return Ok(vec![name]) };
+    let png = drawing.and_then(|drawing| drawing.encode(Format::Png).map_err(|error| error.to_string()));
     let png = png.map_err(|error| Failure::Input(format!("{name}: {error}")))?;
     results.write(name, |out| out.write_all(&png))?;
     Ok(Vec::new())

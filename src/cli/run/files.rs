@@ -22,7 +22,8 @@ pub(crate) const TIMES: &str = "bench.png";
 pub(crate) const QPS: &str = "problem.qps";
 pub(crate) const NPZ: &str = "problem.npz";
 /// In the order of [`QpPart::ALL`](crate::qp::QpPart::ALL).
-pub(crate) const MTX: [&str; 4] = ["problem_P.mtx", "problem_A.mtx", "problem_q.mtx", "problem_b.mtx"];
+pub(crate) const MTX: [&str; 5] =
+    ["problem_P.mtx", "problem_A.mtx", "problem_q.mtx", "problem_b.mtx", "problem_c.mtx"];
 
 /// Results that belong together: they come and go together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,7 +51,7 @@ impl Part {
             Self::Converge => &[ERRORS, ERRORS_TABLE, RATES],
             Self::Adapt => &[LEVELS, CHECKPOINT, HISTORY],
             Self::Bench => &[ROWS, ROWS_TABLE, TIMES],
-            Self::Export => &[QPS, NPZ, MTX[0], MTX[1], MTX[2], MTX[3]],
+            Self::Export => &[QPS, NPZ, MTX[0], MTX[1], MTX[2], MTX[3], MTX[4]],
         }
     }
 

@@ -82,6 +82,12 @@ impl Axis {
         if self.exponent == 0 { String::new() } else { format!("×10{}", superscript(self.exponent)) }
     }
 
+    /// A tick at the high end, to a thousandth of the length.
+    pub(crate) fn greatest(&self) -> Tick {
+        let step = round_step((self.high - self.low) / 1000.0);
+        Tick { place: 1.0, label: number(self.high, step) }
+    }
+
     /// Round ticks, about `count` of them.
     pub(crate) fn ticks(&self, count: usize) -> Vec<Tick> {
         let step = round_step((self.high - self.low) / count.max(1) as f64);
@@ -95,9 +101,18 @@ impl Axis {
         (first..=last).map(tick).collect()
     }
 
-    /// The round number next to the place `place`, to a hundredth of the length: its place and its label.
-    pub(crate) fn round(&self, place: f64) -> Tick {
-        let step = round_step((self.high - self.low) / 100.0);
+    /// The round number next to the place `place`, to a hundredth of the length or to less where that is farther off than
+    /// `reach`: its place and its label.
+    pub(crate) fn round(&self, place: f64, reach: f64) -> Tick {
+        const FINEST: i32 = 10;
+        let at = |digits: i32| self.rounded(place, 10f64.powi(-digits));
+        let near = |tick: &Tick| (tick.place - place).abs() <= reach;
+        (2..FINEST).map(at).find(near).unwrap_or_else(|| at(FINEST))
+    }
+
+    /// The round number next to the place `place`, to this part of the length.
+    fn rounded(&self, place: f64, part: f64) -> Tick {
+        let step = round_step((self.high - self.low) * part);
         let value = ((self.low + place * (self.high - self.low)) / step).round() * step;
         let place = (value - self.low) / (self.high - self.low);
         let digits = number(value, step);
@@ -133,6 +148,27 @@ fn number(value: f64, step: f64) -> String {
     }
     let decimals = (1e-9 - step.log10().floor()).max(0.0) as usize;
     format!("{value:.decimals$}").replace('-', "−")
+}
+
+/// A positive number by two digits, in powers of ten where it is small or large.
+pub(crate) fn scientific(value: f64) -> String {
+    times(value).trim_start_matches('×').to_owned()
+}
+
+/// A factor by two digits, such as "×2.5", "×40" or "×1.2·10⁻⁷".
+pub(crate) fn times(factor: f64) -> String {
+    let exponent = factor.log10().floor();
+    if !(-3.0..4.0).contains(&exponent) {
+        let digits = format!("{factor:.1e}");
+        let (digits, power) = digits.split_once('e').unwrap_or((&digits, "0"));
+        return format!("×{digits}·10{}", superscript(power.parse().unwrap_or(0)));
+    }
+    let unit = 10f64.powf(exponent - 1.0);
+    let decimals = (1.0 - exponent).max(0.0) as usize;
+    let digits = format!("{:.decimals$}", (factor / unit).round() * unit);
+    let short =
+        if digits.contains('.') { digits.trim_end_matches('0').trim_end_matches('.') } else { &digits };
+    format!("×{short}")
 }
 
 /// An integer in raised digits.

@@ -33,6 +33,9 @@ pub(crate) const DUAL_CELL: Rgb = [236, 243, 250];
 /// The cells of the dual mesh in contact: darker than the others in grey as well.
 pub(crate) const DUAL_CONTACT: Rgb = [250, 206, 130];
 
+/// The rim of the contact over the colours of [`force`]: none of them, and of middle brightness.
+pub(crate) const RIM: Rgb = [213, 94, 0];
+
 /// Curves (M. Okabe, K. Ito, 2008), those first that differ most in grey: dark blue, orange, black, sky blue, red, purple,
 /// green.
 pub(crate) const CURVES: [Rgb; 7] = [
@@ -70,5 +73,5 @@ pub(crate) fn force(place: f64) -> Rgb {
 
 /// `share` of `over` and the rest of `under`.
 pub(crate) fn mix(under: Rgb, over: Rgb, share: f64) -> Rgb {
-    std::array::from_fn(|k| (f64::from(under[k]) * (1.0 - share) + f64::from(over[k]) * share).round() as u8)
+    std::array::from_fn(|k| (f64::from(under[k]) * (1.0 - share) + f64::from(over[k]) * share + 0.5) as u8)
 }

@@ -89,7 +89,12 @@ impl Frame {
 
     /// Ticks and labels right of the frame.
     pub(crate) fn right_axis(&self, canvas: &mut Canvas, axis: &Axis, count: usize) {
-        for tick in axis.ticks(count) {
+        self.right_ticks(canvas, &axis.ticks(count));
+    }
+
+    /// These ticks and their labels right of the frame.
+    pub(crate) fn right_ticks(&self, canvas: &mut Canvas, ticks: &[Tick]) {
+        for tick in ticks {
             let [x, y] = self.at([1.0, tick.place]);
             canvas.line([[x, y], [x + TICK, y]], 1.5, INK);
             canvas.text(&tick.label, [x + TICK + 6.0, y], SMALL, INK, Anchor::Left);

@@ -1,9 +1,17 @@
 //! Scan conversion: which pixels a triangle or a line covers.
+//!
+//! Line by line of pixels, and on each only between the ends of what it cuts out of the shape: the work is in proportion to
+//! the pixels painted and to the lines that a shape meets in its shorter direction, not to its bounding box.
+
+use std::ops::Range;
 
 use crate::geometry::barycentric_gradients;
 
 /// Pixels on an edge belong to both triangles, so that rounding leaves no hole between them.
 const ON_EDGE: f64 = -1e-9;
+
+/// By how much of a pixel the ends of a span may be rounded: which pixels of it are covered is asked of each.
+const SLACK: f64 = 1e-6;
 
 /// Calls `paint(column, row, barycentric coordinates)` for each pixel of a grid of `size` columns and rows
 /// whose centre lies in the triangle. A triangle without area has no pixels.
@@ -13,19 +21,31 @@ pub(crate) fn triangle(
     mut paint: impl FnMut(usize, usize, [f64; 3]),
 ) {
     let Some(gradients) = barycentric_gradients(corners) else { return };
-    let [columns, rows] = [0, 1].map(|axis| {
-        let low = corners.iter().map(|p| p[axis]).fold(f64::INFINITY, f64::min);
-        let high = corners.iter().map(|p| p[axis]).fold(f64::NEG_INFINITY, f64::max);
-        pixel_range(low, high, size[axis])
-    });
-    for row in rows {
-        for column in columns.clone() {
-            let centre = [column as f64 + 0.5, row as f64 + 0.5];
-            let weights = [0, 1, 2].map(|k| {
-                let from = corners[(k + 1) % 3];
-                gradients[k][0] * (centre[0] - from[0]) + gradients[k][1] * (centre[1] - from[1])
-            });
+    let bounds = [0, 1].map(|axis| extent(corners.map(|p| p[axis])));
+    let [along, across] = directions(bounds);
+    let slopes = gradients.map(|gradient| gradient[along]);
+    let lengths = slopes.map(|slope| 1.0 / slope);
+    for line in pixel_range(bounds[across], size[across]) {
+        let middle = line as f64 + 0.5;
+        // On the line each weight is linear, and its zero an end of the span.
+        let starts = [0, 1, 2].map(|k| {
+            let from = corners[(k + 1) % 3];
+            gradients[k][across] * (middle - from[across]) - slopes[k] * from[along]
+        });
+        let mut span = bounds[along];
+        for k in 0..3 {
+            let zero = (ON_EDGE - starts[k]) * lengths[k];
+            if slopes[k] > 0.0 {
+                span[0] = span[0].max(zero - SLACK);
+            } else if slopes[k] < 0.0 {
+                span[1] = span[1].min(zero + SLACK);
+            }
+        }
+        for pixel in pixel_range(span, size[along]) {
+            let weights = [0, 1, 2].map(|k| starts[k] + slopes[k] * (pixel as f64 + 0.5));
+            visited();
             if weights.iter().all(|&weight| weight >= ON_EDGE) {
+                let [column, row] = in_order(along, [pixel, line]);
                 paint(column, row, weights);
             }
         }
@@ -39,17 +59,26 @@ pub(crate) fn line(
     size: [usize; 2],
     mut paint: impl FnMut(usize, usize, f64),
 ) {
-    let [columns, rows] = [0, 1].map(|axis| {
-        pixel_range(from[axis].min(to[axis]) - radius, from[axis].max(to[axis]) + radius, size[axis])
-    });
-    let along = [to[0] - from[0], to[1] - from[1]];
-    let square = along[0] * along[0] + along[1] * along[1];
-    for row in rows {
-        for column in columns.clone() {
+    let vector = [to[0] - from[0], to[1] - from[1]];
+    let square = vector[0] * vector[0] + vector[1] * vector[1];
+    let bounds = [0, 1].map(|axis| grown(extent([from[axis], to[axis]]), radius));
+    let [along, across] = directions(bounds);
+    for line in pixel_range(bounds[across], size[across]) {
+        let middle = line as f64 + 0.5;
+        // Only the part of the line within `radius` of these pixels, across, can be near them.
+        let place = |at: f64| ((at - from[across]) / vector[across]).clamp(0.0, 1.0);
+        let ends = if vector[across] == 0.0 {
+            [from[along], to[along]]
+        } else {
+            [middle - radius, middle + radius].map(|at| from[along] + place(at) * vector[along])
+        };
+        for pixel in pixel_range(grown(extent(ends), radius + SLACK), size[along]) {
+            let [column, row] = in_order(along, [pixel, line]);
             let offset = [column as f64 + 0.5 - from[0], row as f64 + 0.5 - from[1]];
-            let projected = offset[0] * along[0] + offset[1] * along[1];
+            let projected = offset[0] * vector[0] + offset[1] * vector[1];
             let place = if square > 0.0 { (projected / square).clamp(0.0, 1.0) } else { 0.0 };
-            let [dx, dy] = [offset[0] - place * along[0], offset[1] - place * along[1]];
+            let [dx, dy] = [offset[0] - place * vector[0], offset[1] - place * vector[1]];
+            visited();
             if dx * dx + dy * dy <= radius * radius {
                 paint(column, row, place);
             }
@@ -63,10 +92,48 @@ pub(crate) fn nearest_corner(weights: [f64; 3]) -> usize {
     if weights[2] > weights[second] { 2 } else { second }
 }
 
-/// The pixels whose centres lie between `low` and `high`, cut off at the edges of the grid.
-fn pixel_range(low: f64, high: f64, size: usize) -> std::ops::Range<usize> {
-    let limit = size as f64;
-    let first = (low - 0.5).ceil().clamp(0.0, limit) as usize;
-    let end = ((high - 0.5).floor() + 1.0).clamp(0.0, limit) as usize;
-    first..end.max(first)
+/// The corner of pixels nearest to a point. A mesh whose vertices are moved there keeps no holes, and loses the triangles that
+/// are too thin to be seen: those that remain have at least half a pixel, so that there are not many more than pixels.
+pub(crate) fn on_grid(point: [f64; 2]) -> [f64; 2] {
+    point.map(f64::round)
 }
+
+/// The direction of the lines that are scanned, and that across: as few lines as possible.
+fn directions(bounds: [[f64; 2]; 2]) -> [usize; 2] {
+    let [width, height] = bounds.map(|[low, high]| high - low);
+    if width < height { [1, 0] } else { [0, 1] }
+}
+
+/// A pair in the directions of [`directions`] as one of column and row.
+fn in_order<T>(along: usize, [first, second]: [T; 2]) -> [T; 2] {
+    if along == 0 { [first, second] } else { [second, first] }
+}
+
+fn extent<const N: usize>(values: [f64; N]) -> [f64; 2] {
+    let start = [f64::INFINITY, f64::NEG_INFINITY];
+    values.into_iter().fold(start, |[low, high], x| [low.min(x), high.max(x)])
+}
+
+fn grown([low, high]: [f64; 2], by: f64) -> [f64; 2] {
+    [low - by, high + by]
+}
+
+/// The pixels whose centres lie between `low` and `high`, cut off at the edges of the grid.
+fn pixel_range([low, high]: [f64; 2], size: usize) -> Range<usize> {
+    // `ceil` and `floor` are calls of a library, and this is asked of every line of every triangle.
+    let limit = size as f64;
+    let below = |x: f64| x.clamp(0.0, limit) as usize;
+    let first = below(low - 0.5);
+    let first = if (first as f64) < low - 0.5 { first + 1 } else { first };
+    first..below(high + 0.5).max(first)
+}
+
+/// Tests count the pixels that are looked at.
+#[cfg(not(test))]
+fn visited() {}
+
+#[cfg(test)]
+use tests::visited;
+
+#[cfg(test)]
+mod tests;

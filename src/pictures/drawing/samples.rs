@@ -1,6 +1,8 @@
 //! Finished pictures, for the tests.
 
+use super::canvas::Canvas;
 use super::color::Rgb;
+use super::encode::{Drawing, Format};
 
 /// The pixels of a decoded picture.
 pub(crate) struct Image {
@@ -16,6 +18,10 @@ impl Image {
         let info = reader.next_frame(&mut data).expect("PNG data");
         let pixels = data.chunks_exact(3).map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect();
         Image { width: info.width as usize, height: info.height as usize, pixels }
+    }
+
+    pub(crate) fn of(canvas: Canvas) -> Image {
+        Image::decode(&Drawing::new(canvas).encode(Format::Png).expect("an image"))
     }
 
     pub(crate) fn at(&self, [x, y]: [f64; 2]) -> Rgb {

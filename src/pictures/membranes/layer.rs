@@ -1,12 +1,14 @@
 //! One surface of the oblique view with its depth, pixel by pixel.
 
-use super::canvas::{Canvas, FINE};
-use super::color::{CONTACT, Rgb, mix};
-use super::frame::Frame;
-use super::raster;
+use crate::parallel::prelude::*;
+
 use super::scene::{Scene, TOUCHING};
 use super::view::View;
 use crate::geometry::barycentric_gradients;
+use crate::pictures::drawing::canvas::{Bitmap, FINE};
+use crate::pictures::drawing::color::{CONTACT, Rgb, mix};
+use crate::pictures::drawing::frame::Frame;
+use crate::pictures::drawing::raster;
 
 /// Lines win over the surface they lie on, and membrane 1 over membrane 2 where they touch.
 const NEARER: f32 = 0.004;
@@ -58,13 +60,22 @@ impl Layer {
     /// Paints a membrane, shaded, with grid lines and the contact region.
     pub(super) fn surface(&mut self, scene: &Scene, view: &View, style: &Style) {
         let shades = brightness(scene, view, style.membrane);
+        let in_box = |v: usize| view.in_box(scene.place(v), scene.levels(v)[style.membrane]);
+        let project = |v: usize| {
+            let [x, y, nearness] = view.project(in_box(v));
+            (raster::on_grid(self.fine([x, y])), nearness)
+        };
+        let projected: Vec<([f64; 2], f64)> = (0..scene.vertex_count()).map(project).collect();
         let spacing = [0, 1].map(|k| 1.0 / (GRID * view.sides()[k]).round().max(2.0));
         for corners in scene.triangles() {
-            let places = corners.map(|v| view.in_box(scene.place(v), scene.levels(v)[style.membrane]));
-            let gaps = corners.map(|v| scene.levels(v)[0] - scene.levels(v)[1]);
-            let points = places.map(|place| view.project(place));
-            let flat = points.map(|[x, y, _]| self.fine([x, y]));
+            let flat = corners.map(|v| projected[v].0);
             let Some(gradients) = barycentric_gradients(flat) else { continue };
+            let places = corners.map(in_box);
+            if places.iter().all(|place| place[1] < style.from) {
+                continue;
+            }
+            let gaps = corners.map(|v| scene.levels(v)[0] - scene.levels(v)[1]);
+            let nearnesses = corners.map(|v| projected[v].1);
             let steepness = [0, 1].map(|k| {
                 let slope = |axis: usize| (0..3).map(|i| gradients[i][axis] * places[i][k]).sum::<f64>();
                 let [across, down] = [slope(0), slope(1)];
@@ -73,10 +84,13 @@ impl Layer {
             let size = self.size;
             raster::triangle(flat, size, |column, row, weights| {
                 let blend = |values: [f64; 3]| (0..3).map(|i| weights[i] * values[i]).sum::<f64>();
-                let at = [0, 1].map(|k| blend(places.map(|place| place[k])));
-                let nearness = blend(points.map(|point| point[2])) as f32;
+                let nearness = blend(nearnesses) as f32;
                 let texel = &mut self.texels[row * size[0] + column];
-                if at[1] < style.from || nearness <= texel.nearness {
+                if nearness <= texel.nearness {
+                    return;
+                }
+                let at = [0, 1].map(|k| blend(places.map(|place| place[k])));
+                if at[1] < style.from {
                     return;
                 }
                 let gap = blend(gaps);
@@ -105,18 +119,24 @@ impl Layer {
         });
     }
 
-    /// Blends the layer onto the canvas where it is not hidden by `behind`: `share` of the membrane, contact and
-    /// lines in full.
-    pub(super) fn draw(&self, canvas: &mut Canvas, behind: Option<&Layer>, share: f64) {
-        let [left, top] = [self.frame.left, self.frame.top].map(|x| x as usize * FINE);
-        for (pixel, texel) in self.texels.iter().enumerate() {
-            let hidden = behind.is_some_and(|layer| layer.texels[pixel].nearness > texel.nearness + NEARER);
-            if texel.kind == Kind::Nothing || hidden {
-                continue;
+    /// The layer over another one, where that does not hide it: `share` of the membrane, contact and lines in full.
+    pub(super) fn over(&self, behind: &Layer, share: f64) -> Bitmap {
+        let look = |(texel, behind): (&Texel, &Texel)| {
+            let [red, green, blue] = behind.color;
+            let hidden = texel.kind == Kind::Nothing || behind.nearness > texel.nearness + NEARER;
+            match (hidden, behind.kind) {
+                (true, Kind::Nothing) => [0; 4],
+                (true, _) => [red, green, blue, 255],
+                (false, below) => {
+                    let share = if texel.kind == Kind::Membrane { share } else { 1.0 };
+                    let seen = below != Kind::Nothing && share < 1.0;
+                    let color = if seen { mix(behind.color, texel.color, share) } else { texel.color };
+                    let cover = if seen { 255 } else { (255.0 * share).round() as u8 };
+                    [color[0], color[1], color[2], cover]
+                }
             }
-            let share = if texel.kind == Kind::Membrane { share } else { 1.0 };
-            canvas.blend(left + pixel % self.size[0], top + pixel / self.size[0], texel.color, share);
-        }
+        };
+        Bitmap { size: self.size, pixels: self.texels.par_iter().zip(&behind.texels).map(look).collect() }
     }
 
     /// The point of the canvas nearest to `label` that shows `kind` and, if possible, has it all around.
@@ -174,7 +194,9 @@ fn lit(base: Rgb, shade: f64, line: f64, contact: bool) -> Rgb {
 /// How much of a grid line covers the place `at`: lines `spacing` apart, `steepness` of the place per pixel;
 /// fading where they would run together.
 fn grid_line(at: f64, spacing: f64, steepness: f64) -> f64 {
-    let offset = (at / spacing - (at / spacing).round()).abs() * spacing;
+    // The nearest line: places are positive.
+    let nearest = (at / spacing + 0.5) as u32;
+    let offset = (at - f64::from(nearest) * spacing).abs();
     let pixels_apart = spacing / steepness;
     let half_width = 0.45 * FINE as f64;
     if offset <= half_width * steepness { (pixels_apart / (8.0 * FINE as f64)).min(1.0) } else { 0.0 }

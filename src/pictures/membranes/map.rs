@@ -1,13 +1,13 @@
 //! The plan view: lambda on the dual cells, the contact region and the line of the section.
 
-use super::SIZE;
-use super::axis::Axis;
-use super::canvas::{Anchor, Canvas, FINE};
-use super::color::{CONTACT, CONTACT_BAND, FREE, INK, PAPER, force};
-use super::frame::{Frame, NORMAL, SMALL};
-use super::raster;
+use super::picture::SIZE;
 use super::scene::Scene;
 use super::section::Cut;
+use crate::pictures::drawing::axis::Axis;
+use crate::pictures::drawing::canvas::{Anchor, Bitmap, Canvas, FINE};
+use crate::pictures::drawing::color::{CONTACT, CONTACT_BAND, FREE, INK, PAPER, force};
+use crate::pictures::drawing::frame::{Frame, NORMAL, SMALL};
+use crate::pictures::drawing::raster;
 
 /// Elongated domains are drawn no longer than this, width over height or the reverse.
 const MOST_ELONGATED: f64 = 8.0;
@@ -35,21 +35,19 @@ impl Map {
         let top = (room.top + (room.height - height) / 2.0).round();
         let frame = Frame { left, top, width, height };
         let size = [width, height].map(|length| length as usize * FINE);
+        let at = |v: usize| {
+            let [x, y] = scene.place(v);
+            [x * size[0] as f64, (1.0 - y) * size[1] as f64]
+        };
         let mut vertex = vec![OUTSIDE; size[0] * size[1]];
         for corners in scene.triangles() {
-            let points = corners.map(|v| {
-                let [x, y] = scene.place(v);
-                [x * size[0] as f64, (1.0 - y) * size[1] as f64]
-            });
-            raster::triangle(points, size, |column, row, weights| {
+            raster::triangle(corners.map(|v| raster::on_grid(at(v))), size, |column, row, weights| {
                 vertex[row * size[0] + column] = corners[raster::nearest_corner(weights)];
             });
         }
         // A dual cell in contact may be smaller than a pixel: its vertex is shown in any case.
         for &v in scene.triangles().iter().flatten().filter(|&&v| scene.in_contact(v)) {
-            let [x, y] = scene.place(v);
-            let [column, row] =
-                [x * size[0] as f64, (1.0 - y) * size[1] as f64].map(|at| at.max(0.0) as usize);
+            let [column, row] = at(v).map(|at| at.max(0.0) as usize);
             vertex[row.min(size[1] - 1) * size[0] + column.min(size[0] - 1)] = v;
         }
         Map { frame, size, vertex }
@@ -88,11 +86,14 @@ impl Map {
     }
 
     fn headings(&self, canvas: &mut Canvas, scene: &Scene) {
-        let share = self.count(|vertex| scene.in_contact(vertex)) / self.count(|_| true).max(1.0);
-        let extent = match 100.0 * share {
-            _ if !scene.touching => "no contact".to_owned(),
-            percent if percent < 0.1 => "contact on less than 0.1 % of the area".to_owned(),
-            percent => format!("contact on {percent:.1} % of the area"),
+        let share = match 100.0 * scene.contact_share {
+            percent if percent >= 0.1 => format!("{percent:.1} %"),
+            _ => "less than 0.1 %".to_owned(),
+        };
+        let extent = if scene.touching {
+            format!("contact on {share} of the area (dual cells Dₐ)")
+        } else {
+            "no contact".to_owned()
         };
         let force = if scene.touching && !scene.pressed {
             "Contact without force, λ = 0"
@@ -103,20 +104,19 @@ impl Map {
         canvas.text(&extent, [self.frame.left, self.frame.top - 60.0], SMALL, INK, Anchor::Left);
     }
 
-    fn count(&self, wanted: impl Fn(usize) -> bool) -> f64 {
-        self.vertex.iter().filter(|&&vertex| vertex != OUTSIDE && wanted(vertex)).count() as f64
-    }
-
     fn cells(&self, canvas: &mut Canvas, scene: &Scene) {
-        for (pixel, &vertex) in self.vertex.iter().enumerate().filter(|&(_, &vertex)| vertex != OUTSIDE) {
-            let color = match (scene.in_contact(vertex), scene.pressed) {
-                (true, true) => force(scene.force.place(scene.lambda(vertex))),
-                (true, false) => CONTACT_BAND,
-                (false, _) => FREE,
+        let color = |&vertex: &usize| {
+            let [red, green, blue] = match vertex {
+                OUTSIDE => return [0; 4],
+                _ if !scene.in_contact(vertex) => FREE,
+                _ if scene.pressed => force(scene.force.place(scene.lambda(vertex))),
+                _ => CONTACT_BAND,
             };
-            let [column, row] = self.on_canvas(pixel);
-            canvas.blend(column, row, color, 1.0);
-        }
+            [red, green, blue, 255]
+        };
+        let pixels = self.vertex.iter().map(color).collect();
+        let corner = [self.frame.left, self.frame.top].map(|x| x as usize);
+        canvas.bitmap(corner, Bitmap { size: self.size, pixels });
     }
 
     /// Draws the rim of the contact region: around its pixels that are next to a pixel without contact.
@@ -181,7 +181,13 @@ fn color_bar(canvas: &mut Canvas, axis: &Axis, map: Frame) {
         canvas.fill([low, high], force(place));
     }
     bar.outline(canvas);
-    bar.right_axis(canvas, axis, 6);
+    // The greatest value has a tick of its own; others give way to it.
+    const APART: f64 = 0.07;
+    let greatest = axis.greatest();
+    let mut ticks = axis.ticks(6);
+    ticks.retain(|tick| (tick.place - greatest.place).abs() > APART);
+    ticks.push(greatest);
+    bar.right_ticks(canvas, &ticks);
     let title = [(bar.left + 24.0).min(SIZE[0] as f64 - 60.0), bar.top - 24.0];
     canvas.text(&format!("λ{}", axis.suffix()), title, NORMAL, INK, Anchor::Middle);
 }

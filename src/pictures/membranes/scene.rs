@@ -1,8 +1,9 @@
 //! The checked data of a picture, with one axis per quantity.
 
-use super::axis::Axis;
-use super::outline::boundary_edges;
-use super::{Picture, PictureError};
+use super::picture::{Picture, PictureError};
+use crate::geometry::twice_signed_area;
+use crate::pictures::drawing::axis::Axis;
+use crate::pictures::drawing::outline::boundary_edges;
 
 /// Above this the difference of two numbers may overflow.
 const LARGEST: f64 = 1e305;
@@ -21,6 +22,8 @@ pub(super) struct Scene<'a> {
     pub(super) height: Axis,
     /// The axis of lambda, zero included.
     pub(super) force: Axis,
+    /// The area of the dual cells `D_a` in contact over that of the domain: each vertex has a third of its triangles.
+    pub(super) contact_share: f64,
     /// The edges of one triangle only.
     pub(super) boundary: Vec<[usize; 2]>,
     /// Whether any vertex of a triangle is in contact.
@@ -38,9 +41,12 @@ impl<'a> Scene<'a> {
         let plane = [0, 1].map(|axis| Axis::over(used.iter().map(|&v| picture.points[v][axis]), false));
         let height = Axis::over(used.iter().flat_map(|&v| [picture.upper[v], picture.lower[v]]), false);
         let heights = picture.upper.iter().zip(picture.lower);
+        let places: Vec<[f64; 2]> =
+            picture.points.iter().map(|&[x, y]| [plane[0].place(x), plane[1].place(y)]).collect();
         Ok(Scene {
             picture,
-            places: picture.points.iter().map(|&[x, y]| [plane[0].place(x), plane[1].place(y)]).collect(),
+            contact_share: contact_share(picture, &places),
+            places,
             levels: heights.map(|(&u1, &u2)| [height.place(u1), height.place(u2)]).collect(),
             plane,
             height,
@@ -103,6 +109,16 @@ fn used_vertices(picture: &Picture) -> Result<Vec<usize>, PictureError> {
         }
     }
     Ok((0..count).filter(|&vertex| used[vertex]).collect())
+}
+
+/// The area of the dual cells in contact over that of the domain, which any scale of the axes leaves as it is.
+fn contact_share(picture: &Picture, places: &[[f64; 2]]) -> f64 {
+    let sums = picture.triangles.iter().fold([0.0; 2], |[domain, contact], corners| {
+        let area = twice_signed_area(corners.map(|v| places[v])).abs();
+        let touching = corners.iter().filter(|&&v| picture.contact[v]).count();
+        [domain + area, contact + area * touching as f64 / 3.0]
+    });
+    sums[1] / sums[0]
 }
 
 /// One value per vertex, each finite where a triangle uses it.

@@ -1,8 +1,7 @@
 //! Where the domain is cut, and the solution along the cut.
 
-use super::map::Map;
-use super::raster;
 use super::scene::Scene;
+use crate::pictures::drawing::raster;
 
 /// A straight cut through the domain, parallel to its longer side.
 #[derive(Clone, Copy, Debug)]
@@ -11,22 +10,31 @@ pub(super) struct Cut {
     pub(super) along: usize,
     /// The place of the cut on the axis of the other coordinate.
     pub(super) place: f64,
+    /// By how much that may be rounded, to stay in the dual cell that it goes through.
+    pub(super) reach: f64,
 }
 
 impl Cut {
-    /// The cut, at a round coordinate, through the centre of the contact region, or of the domain if there is no
-    /// contact. Of several regions it takes the largest, unless they lie side by side.
-    pub(super) fn through(scene: &Scene, map: &Map) -> Cut {
+    /// The cut, at a round coordinate, through the greatest lambda: of several such vertices that one nearest to the centre of
+    /// the contact region. Without a force it goes through that centre, without contact through that of the domain; of several
+    /// regions it takes the largest, unless they lie side by side.
+    ///
+    /// `profile` counts the pixels of the region on each line across an axis.
+    pub(super) fn through(scene: &Scene, profile: impl FnOnce(usize) -> Vec<usize>) -> Cut {
         const NEARLY_SQUARE: f64 = 0.999;
         let along = if scene.aspect(f64::MAX) > NEARLY_SQUARE { 0 } else { 1 };
-        let profile = map.profile(1 - along, |vertex| !scene.touching || scene.in_contact(vertex));
+        let profile = profile(1 - along);
         let lines: Vec<(usize, usize)> = profile.iter().copied().enumerate().collect();
         let area = |region: &[(usize, usize)]| region.iter().map(|(_, count)| count).sum::<usize>();
         let regions = lines.chunk_by(|a, b| (a.1 > 0) == (b.1 > 0));
         let region = regions.max_by_key(|region| area(region)).unwrap_or(&[]);
         let moment: usize = region.iter().map(|(line, count)| line * count).sum();
-        let centre = moment as f64 / area(region).max(1) as f64 + 0.5;
-        Cut { along, place: scene.plane[1 - along].round(centre / profile.len() as f64).place }
+        let centre = (moment as f64 / area(region).max(1) as f64 + 0.5) / profile.len() as f64;
+        let (place, reach) = match peak(scene, 1 - along, centre) {
+            Some(vertex) => (scene.place(vertex)[1 - along], half_width(scene, vertex, 1 - along)),
+            None => (centre, f64::INFINITY),
+        };
+        Cut { along, place: scene.plane[1 - along].round(place, reach).place, reach }
     }
 
     /// The place in the domain's rectangle at the place `along` on the cut.
@@ -43,6 +51,27 @@ impl Cut {
     pub(super) fn split(&self, place: [f64; 2]) -> [f64; 2] {
         [place[self.along], place[1 - self.along]]
     }
+}
+
+/// The vertex of the greatest lambda; of those where it is as great to the eye, the one whose coordinate `axis` is nearest to
+/// `centre`.
+fn peak(scene: &Scene, axis: usize, centre: f64) -> Option<usize> {
+    const AS_GREAT: f64 = 0.999;
+    let pressed = || scene.triangles().iter().flatten().copied().filter(|&v| scene.in_contact(v));
+    let greatest = pressed().map(|v| scene.lambda(v)).fold(0.0, f64::max);
+    let distance = |v: usize| (scene.place(v)[axis] - centre).abs();
+    let peaks = pressed().filter(|&v| greatest > 0.0 && scene.lambda(v) >= AS_GREAT * greatest);
+    peaks.min_by(|&v, &w| distance(v).total_cmp(&distance(w)))
+}
+
+/// How far from a vertex its dual cell reaches at least in the direction of `axis`: a third of the way to the farthest vertex
+/// on the nearer side, less what the slant of its triangles may take.
+fn half_width(scene: &Scene, vertex: usize, axis: usize) -> f64 {
+    const SLANT: f64 = 0.5;
+    let around = scene.triangles().iter().filter(|corners| corners.contains(&vertex)).flatten();
+    let offsets = around.map(|&v| scene.place(v)[axis] - scene.place(vertex)[axis]);
+    let [below, above] = offsets.fold([0.0f64; 2], |[low, high], x| [low.min(x), high.max(x)]);
+    SLANT * above.min(-below) / 3.0
 }
 
 /// The solution at one point of the cut.
@@ -96,6 +125,21 @@ impl Section {
         }
         let steps = self.samples.len() as f64;
         stretches.into_iter().map(|ends| ends.map(|step| step as f64 / steps)).collect()
+    }
+
+    /// The stretch of the steps with one lambda in contact, as places along the cut, with that lambda.
+    pub(super) fn forces(&self) -> Vec<([f64; 2], f64)> {
+        let force =
+            |sample: &Option<Sample>| sample.filter(|sample| sample.contact).map(|sample| sample.lambda);
+        let steps = self.samples.len() as f64;
+        let mut start = 0;
+        let stretches = self.samples.chunk_by(|a, b| force(a) == force(b));
+        let stretch = |samples: &[Option<Sample>]| {
+            let ends = [start, start + samples.len()].map(|step| step as f64 / steps);
+            start += samples.len();
+            Some((ends, force(&samples[0])?))
+        };
+        stretches.filter_map(stretch).collect()
     }
 
     /// The place along the cut of a sample.

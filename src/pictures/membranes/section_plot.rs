@@ -1,14 +1,18 @@
 //! The plot of the section: both membranes, and lambda below on its own axis.
 
-use super::axis::Axis;
-use super::canvas::{Anchor, Canvas, FINE};
-use super::color::{CONTACT, CONTACT_BAND, INK, LOWER_LINE, Rgb, UPPER_LINE, force};
-use super::frame::{Frame, NORMAL, SMALL};
 use super::scene::Scene;
 use super::section::{Sample, Section};
+use crate::pictures::drawing::axis::{Axis, times};
+use crate::pictures::drawing::canvas::{Anchor, Canvas, FINE};
+use crate::pictures::drawing::color::{CONTACT, CONTACT_BAND, INK, LOWER_LINE, Rgb, UPPER_LINE, force};
+use crate::pictures::drawing::frame::{Frame, NORMAL, SMALL};
 
 /// Width of the curves in pixels.
 const CURVE: f64 = 4.0;
+/// The greatest lambda is written to this part of its range.
+const MAXIMUM: f64 = 1e-3;
+/// Room for its label above the bars, as part of their range.
+const OVER_BARS: f64 = 0.42;
 /// Room for labels above and below the curves, as part of their range.
 const HEADROOM: f64 = 0.28;
 
@@ -27,7 +31,7 @@ impl<'a> SectionPlot<'a> {
     pub(super) fn new(scene: &'a Scene<'a>, section: &'a Section, [membranes, force]: [Frame; 2]) -> Self {
         let heights = section.samples.iter().flatten().flat_map(|sample| sample.heights);
         let height = Axis::over(heights, false).widened([HEADROOM, HEADROOM]);
-        let lambda = scene.force.widened([0.0, 0.15]);
+        let lambda = scene.force.widened([0.0, OVER_BARS]);
         SectionPlot { scene, section, membranes, force, height, lambda }
     }
 
@@ -79,14 +83,26 @@ impl<'a> SectionPlot<'a> {
             self.force.rules(canvas, &self.lambda, 3);
         }
         let zero = self.lambda.place(0.0);
-        let half_step = 0.5 / self.section.samples.len() as f64;
-        for (step, sample) in self.section.samples.iter().enumerate() {
-            let Some(sample) = sample.filter(|sample| sample.contact) else { continue };
-            let (along, level) = (self.section.along(step), self.lambda.place(sample.lambda));
-            let top_left = self.force.at([along - half_step, level.max(zero)]);
-            let bottom_right = self.force.at([along + half_step, level.min(zero)]);
-            canvas.fill([top_left, bottom_right], force(self.scene.force.place(sample.lambda)));
+        let forces = self.section.forces();
+        for &([start, end], lambda) in &forces {
+            let level = self.lambda.place(lambda);
+            let corners = [self.force.at([start, level.max(zero)]), self.force.at([end, level.min(zero)])];
+            canvas.fill(corners, force(self.scene.force.place(lambda)));
         }
+        let greatest = forces.iter().max_by(|a, b| a.1.total_cmp(&b.1));
+        if let Some(&([start, end], lambda)) = greatest.filter(|_| self.scene.pressed) {
+            self.greatest(canvas, (start + end) / 2.0, lambda);
+        }
+    }
+
+    /// The greatest lambda of the section, over its place.
+    fn greatest(&self, canvas: &mut Canvas, along: f64, lambda: f64) {
+        let axis = &self.scene.force;
+        let text = format!("max {}", axis.round(axis.place(lambda), MAXIMUM).label);
+        let [x, y] = self.force.at([along, self.lambda.place(lambda)]);
+        let half = canvas.width(&text, SMALL) / 2.0 + 6.0;
+        let x = x.clamp(self.force.left + half, self.force.right() - half);
+        canvas.text(&text, [x, y - 0.6 * SMALL], SMALL, INK, Anchor::Middle);
     }
 
     fn membrane_names(&self, canvas: &mut Canvas) {
@@ -162,8 +178,10 @@ impl<'a> SectionPlot<'a> {
         below.bottom_axis(canvas, along);
         let under = [below.left + below.width / 2.0, below.bottom() + 58.0];
         canvas.text(&format!("{name}{}", along.suffix()), under, NORMAL, INK, Anchor::Middle);
-        let title =
-            format!("Section A–A: {other} = {}", self.scene.plane[1 - cut.along].round(cut.place).label);
+        let place = self.scene.plane[1 - cut.along].round(cut.place, cut.reach).label;
+        let scale = |pixels: f64, axis: &Axis| pixels / axis.length();
+        let heights = scale(above.height, &self.height) / scale(above.width, &self.scene.plane[cut.along]);
+        let title = format!("Section A–A: {other} = {place}, heights {}", times(heights));
         canvas.text(&title, [above.left, above.top - 52.0], NORMAL, INK, Anchor::Left);
     }
 }

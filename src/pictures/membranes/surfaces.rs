@@ -1,13 +1,18 @@
 //! The oblique view: membrane 2 in full, membrane 1 cut open along the section.
 
-use super::axis::Tick;
-use super::canvas::{Anchor, Canvas};
-use super::color::{CONTACT, CONTACT_BAND, INK, LOWER, LOWER_LINE, PAPER, RULE, UPPER, UPPER_LINE, mix};
-use super::frame::{Frame, NORMAL, SMALL, fitting_ticks};
 use super::layer::{Kind, Layer, Style};
 use super::scene::{Scene, TOUCHING};
 use super::section::{Cut, Sample, Section};
 use super::view::View;
+use crate::pictures::drawing::axis::Tick;
+use crate::pictures::drawing::canvas::{Anchor, Canvas};
+use crate::pictures::drawing::color::{
+    CONTACT, CONTACT_BAND, INK, LOWER, LOWER_LINE, PAPER, RULE, UPPER, UPPER_LINE, mix,
+};
+use crate::pictures::drawing::frame::{Frame, NORMAL, SMALL, fitting_ticks};
+
+/// Beyond this place of the left edge of the floor its labels would run into those of the heights.
+const FAR_END: f64 = 0.93;
 
 /// How much membrane 1 covers what lies behind it.
 const VEIL: f64 = 0.72;
@@ -25,11 +30,10 @@ pub(super) fn draw(canvas: &mut Canvas, scene: &Scene, section: &Section, room: 
     let cut_at = view.in_box(cut.point(0.5), 0.0)[1];
     let lower_style = Style { membrane: 1, color: LOWER, line: LOWER_LINE, from: f64::NEG_INFINITY };
     let upper_style = Style { membrane: 0, color: UPPER, line: UPPER_LINE, from: cut_at };
-    let lower = membrane(scene, section, &view, &lower_style, room);
-    let upper = membrane(scene, section, &view, &upper_style, room);
+    let layer = |style: &Style| membrane(scene, section, &view, style, room);
+    let (lower, upper) = crate::parallel::join(|| layer(&lower_style), || layer(&upper_style));
     floor(canvas, scene, cut, &view);
-    lower.draw(canvas, None, 1.0);
-    upper.draw(canvas, Some(&lower), VEIL);
+    canvas.bitmap([room.left, room.top].map(|x| x as usize), upper.over(&lower, VEIL));
     names(canvas, &lower, &upper, room);
     axes(canvas, scene, cut, &view);
 }
@@ -70,7 +74,7 @@ fn profile(layer: &mut Layer, scene: &Scene, section: &Section, view: &View, sty
     }
 }
 
-/// The ticks of the front edge of the floor and of its right edge, as places in the box.
+/// The ticks of the front edge of the floor and of its left edge, as places in the box.
 fn floor_ticks(canvas: &Canvas, scene: &Scene, cut: &Cut, view: &View) -> [Vec<Tick>; 2] {
     let [[left, _], [right, _]] = [0.0, 1.0].map(|s| view.on_canvas([s, 0.0, 0.0]));
     let front = fitting_ticks(canvas, &scene.plane[cut.along], 0.8 * (right - left));
@@ -97,8 +101,8 @@ fn floor(canvas: &mut Canvas, scene: &Scene, cut: &Cut, view: &View) {
     }
 }
 
-/// Ticks and names of the axes: of the plane along the front and the right edge of the floor, of the heights
-/// above its left corner.
+/// Ticks and names of the axes: of the plane along the front and the left edge of the floor, where no surface is behind
+/// them, of the heights above its left corner.
 fn axes(canvas: &mut Canvas, scene: &Scene, cut: &Cut, view: &View) {
     let [front, side] = floor_ticks(canvas, scene, cut, view);
     for tick in front {
@@ -109,16 +113,19 @@ fn axes(canvas: &mut Canvas, scene: &Scene, cut: &Cut, view: &View) {
         canvas.text(&tick.label, [x, y], SMALL, INK, Anchor::Middle);
     }
     for tick in side {
-        let [x, y] = view.on_canvas([1.0, tick.place, 0.0]);
-        canvas.line([[x, y], [x + 8.0, y - 2.0]], 1.5, INK);
-        canvas.text(&tick.label, [x + 14.0, y - 2.0], SMALL, INK, Anchor::Left);
+        let [x, y] = view.on_canvas([0.0, tick.place, 0.0]);
+        canvas.line([[x - 8.0, y + 2.0], [x, y]], 1.5, INK);
+        // The labels of the heights stand over the far end of this edge.
+        if tick.place < FAR_END {
+            canvas.text(&tick.label, [x - 14.0, y + 5.0], SMALL, INK, Anchor::Right);
+        }
     }
     let names = ["x", "y"];
     let name = |axis: usize| format!("{}{}", names[axis], scene.plane[axis].suffix());
     let [x, y] = view.on_canvas([0.5, 0.0, 0.0]);
     canvas.text(&name(cut.along), [x + 36.0, y + 62.0], NORMAL, INK, Anchor::Middle);
-    let [x, y] = view.on_canvas([1.0, 0.5, 0.0]);
-    canvas.text(&name(1 - cut.along), [x + 48.0, y + 30.0], NORMAL, INK, Anchor::Left);
+    let [x, y] = view.on_canvas([0.0, 0.5, 0.0]);
+    canvas.text(&name(1 - cut.along), [x - 78.0, y + 34.0], NORMAL, INK, Anchor::Right);
     heights(canvas, scene, view);
 }
 
@@ -131,20 +138,16 @@ fn heights(canvas: &mut Canvas, scene: &Scene, view: &View) {
         canvas.text(&tick.label, [x - 14.0, y], SMALL, INK, Anchor::Right);
     }
     let [x, y] = at(1.0);
-    canvas.text(
-        &format!("u₁, u₂{}", scene.height.suffix()),
-        [x + 14.0, y - 30.0],
-        NORMAL,
-        INK,
-        Anchor::Middle,
-    );
+    let name = format!("u₁, u₂{}", scene.height.suffix());
+    canvas.text(&name, [x - 40.0, y - 62.0], NORMAL, INK, Anchor::Left);
+    canvas.text(&view.enlargement(scene), [x - 40.0, y - 30.0], SMALL, INK, Anchor::Left);
 }
 
 /// Names with leaders to a visible point of what they name.
 fn names(canvas: &mut Canvas, lower: &Layer, upper: &Layer, room: Frame) {
     let names = [
         ("membrane 1 (u₁), cut open along A–A", UPPER_LINE, upper, None, Kind::Membrane, [0.62, 0.06]),
-        ("contact", CONTACT, lower, Some(upper), Kind::Contact, [0.10, 0.88]),
+        ("contact", CONTACT, lower, Some(upper), Kind::Contact, [0.30, 0.97]),
         ("membrane 2 (u₂)", LOWER_LINE, lower, Some(upper), Kind::Membrane, [0.84, 0.94]),
     ];
     for (name, color, layer, hidden_by, kind, [x, y]) in names {

@@ -1,7 +1,8 @@
-use super::axis::Axis;
-use super::canvas::{Anchor, Canvas, FINE};
-use super::color::{self, INK};
 use super::*;
+use crate::pictures::drawing::axis::{Axis, times};
+use crate::pictures::drawing::canvas::{Anchor, Canvas, FINE};
+use crate::pictures::drawing::color::{self, INK};
+use crate::pictures::drawing::encode::Format;
 use crate::pictures::drawing::samples::Image;
 
 /// Rounding of a handful of operations on numbers of order one.
@@ -84,7 +85,7 @@ impl Solution {
     }
 
     fn render(&self) -> Vec<u8> {
-        render(&self.picture("")).expect("a picture of valid data")
+        render(&self.picture("")).expect("valid data").encode(Format::Png).expect("an image")
     }
 
     fn image(&self) -> Image {
@@ -171,12 +172,49 @@ fn the_cut_goes_through_the_contact_region_along_the_longer_side() {
 }
 
 #[test]
+fn the_cut_goes_through_the_greatest_force_and_stays_in_its_dual_cell() {
+    let cells = 200;
+    let mut solution = Solution::new(cells, 2.0, |_, _| true, |x, y| (x - 1.0).hypot(y - 0.5) - 0.3);
+    let peak = (cells + 1) * 133 + 110;
+    assert!(solution.contact[peak] && cut_of(&solution)[1] == 0.5, "a plateau has no peak");
+    solution.lambda[peak] = 2.5;
+    let y = solution.points[peak][1];
+    let place = cut_of(&solution)[1];
+    assert!((place - y).abs() < 1.0 / (3 * cells) as f64, "{place} for {y}");
+    let picture = solution.picture("");
+    let scene = Scene::new(&picture).expect("valid data");
+    let section = Section::new(&scene, Cut::through(&scene, &Map::new(&scene, MAP)), 4000);
+    let greatest = |section: &Section| section.forces().iter().map(|force| force.1).fold(0.0, f64::max);
+    assert_eq!(greatest(&section), 2.5);
+    let beside = Cut { along: 0, place: y + 1.0 / cells as f64, reach: 0.0 };
+    assert_eq!(greatest(&Section::new(&scene, beside, 4000)), 2.0);
+}
+
+#[test]
+fn the_share_of_the_contact_is_that_of_its_dual_cells() {
+    let share = |solution: &Solution| Scene::new(&solution.picture("")).expect("valid data").contact_share;
+    let disk = std::f64::consts::PI * 0.3 * 0.3;
+    assert!((share(&Solution::disk()) - disk).abs() < 0.02);
+    assert!((share(&Solution::new(8, 1.0, |_, _| true, |_, _| 0.0)) - 1.0).abs() < ROUNDING);
+    let mut one = Solution::apart();
+    one.contact[33 * 16 + 16] = true;
+    assert!((share(&one) - 1.0 / 1024.0).abs() < ROUNDING);
+    assert_eq!(share(&Solution::apart()), 0.0);
+}
+
+#[test]
+fn factors_have_two_digits() {
+    let texts = [1.0, 2.54, 40.4, 123.0, 0.0456, 1.0e7, 2.5e-7].map(times);
+    assert_eq!(texts, ["×1", "×2.5", "×40", "×120", "×0.046", "×1.0·10⁷", "×2.5·10⁻⁷"]);
+}
+
+#[test]
 fn the_section_interpolates_and_is_empty_in_a_hole() {
     let mut solution = Solution::new(10, 1.0, |x, y| (x - 0.5).hypot(y - 0.5) > 0.12, |_, _| 1.0);
     solution.upper = solution.points.iter().map(|&[x, y]| 1.0 + 2.0 * x + y).collect();
     let picture = solution.picture("");
     let scene = Scene::new(&picture).expect("valid data");
-    let section = Section::new(&scene, Cut { along: 0, place: 0.52 }, 100);
+    let section = Section::new(&scene, Cut { along: 0, place: 0.52, reach: 1.0 }, 100);
     for (step, sample) in section.samples.iter().enumerate() {
         let x = section.along(step);
         assert_eq!(sample.is_none(), (0.4..0.6).contains(&x), "at x = {x}");
@@ -271,8 +309,8 @@ fn wrong_data_is_an_error_in_one_line() {
 
 #[test]
 fn any_title_stays_on_the_picture() {
-    let margin_is_clean = |canvas: &Canvas| {
-        let image = Image::decode(&canvas.encode().expect("an image"));
+    let margin_is_clean = |canvas: Canvas| {
+        let image = Image::of(canvas);
         (0..image.height).all(|y| {
             (image.width - 38..image.width).all(|x| image.pixels[y * image.width + x] == color::PAPER)
         })
@@ -282,11 +320,11 @@ fn any_title_stays_on_the_picture() {
     for title in ["", "two plates", &strange, &unbroken] {
         let mut canvas = Canvas::new(SIZE);
         heading(&mut canvas, title);
-        assert!(margin_is_clean(&canvas), "{title}");
+        assert!(margin_is_clean(canvas), "{title}");
     }
     let mut canvas = Canvas::new(SIZE);
     canvas.text(&unbroken, [40.0, 52.0], 42.0, INK, Anchor::Left);
-    assert!(!margin_is_clean(&canvas));
+    assert!(!margin_is_clean(canvas));
 }
 
 #[test]
@@ -298,8 +336,8 @@ fn ticks_are_round_and_carry_the_exponent_apart() {
     assert_eq!(Axis::new(-2.5e-9, 3e-9).power(), "×10⁻⁹");
     assert_eq!(Axis::new(0.0, 4e301).power(), "×10³⁰¹");
     assert_eq!(Axis::new(0.0, 1.0).power(), "");
-    assert_eq!(Axis::new(0.0, 1.0).round(0.4999).label, "0.5");
-    assert_ne!(Axis::new(0.0, 1.0).round(0.488).label, "0.5");
+    assert_eq!(Axis::new(0.0, 1.0).round(0.4999, 1.0).label, "0.5");
+    assert_ne!(Axis::new(0.0, 1.0).round(0.488, 1.0).label, "0.5");
 }
 
 #[test]

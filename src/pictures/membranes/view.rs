@@ -1,8 +1,9 @@
 //! The oblique view: a parallel projection of the box that holds both membranes.
 
-use super::frame::Frame;
 use super::scene::Scene;
 use super::section::Cut;
+use crate::pictures::drawing::axis::{Axis, times};
+use crate::pictures::drawing::frame::Frame;
 
 /// The direction of the cut is turned by this angle (radians) out of the plane of the paper.
 const TURN: f64 = 0.38;
@@ -74,6 +75,20 @@ impl View {
         let [s, t] = [0, 1].map(|k| slopes[k] * self.sides[2] / self.sides[k]);
         let normal = (1.0 + s * s + t * t).sqrt();
         ((LIGHT[2] - s * LIGHT[0] - t * LIGHT[1]) / normal).clamp(0.0, 1.0)
+    }
+
+    /// By how much the heights are enlarged compared with the direction of the cut, and the other direction, where it is.
+    pub(super) fn enlargement(&self, scene: &Scene) -> String {
+        let scale = |side: f64, axis: &Axis| side / axis.length();
+        let along = scale(self.sides[0], &scene.plane[self.along]);
+        let heights = times(scale(self.sides[2], &scene.height) / along);
+        let across = times(scale(self.sides[1], &scene.plane[1 - self.along]) / along);
+        let name = ["y", "x"][self.along];
+        if across == times(1.0) {
+            format!("heights {heights}")
+        } else {
+            format!("heights {heights}, {name} {across}")
+        }
     }
 
     /// The lengths of the sides of the box.

@@ -1,5 +1,7 @@
 use super::*;
-use crate::mesh::{Pattern, SubTriangulation, rectangle, samples};
+use crate::mesh::{DualMesh, Mesh, Pattern, SubTriangulation, rectangle, samples};
+use crate::pictures::drawing::color::force;
+use crate::pictures::drawing::encode::Format;
 use crate::pictures::drawing::samples::Image;
 
 /// Rounding of a handful of operations on pixels.
@@ -11,7 +13,7 @@ fn dual(mesh: &Mesh) -> DualMesh {
 
 fn render(mesh: &Mesh, contact: Option<&[bool]>) -> Vec<u8> {
     let dual = dual(mesh);
-    render_mesh(&MeshPicture { title: "", mesh, dual: &dual, contact }).unwrap()
+    render_mesh(&MeshPicture { title: "", mesh, dual: &dual, contact }).unwrap().encode(Format::Png).unwrap()
 }
 
 fn image(mesh: &Mesh, contact: Option<&[bool]>) -> Image {
@@ -59,25 +61,44 @@ fn the_lines_of_both_meshes_lie_where_the_meshes_are() {
     assert_eq!([picture.at(low), picture.at(outside)], [[255; 3]; 2], "no cell reaches the boundary");
 }
 
-#[test]
-fn all_of_a_triangulation_is_drawn_however_fine_and_dark_where_it_is_fine() {
-    let coarse = samples::square(8);
-    let mut bisection = crate::mesh::Bisection::new(coarse);
+/// Refined nine times in the lower left corner.
+fn graded() -> Mesh {
+    let mut bisection = crate::mesh::Bisection::new(samples::square(8));
     for _ in 0..9 {
         let near = |t: &usize| bisection.mesh().corners(*t).iter().all(|&[x, y]| x.max(y) <= 0.25);
         let marked: Vec<usize> = (0..bisection.mesh().triangles().len()).filter(near).collect();
         bisection.refine(&marked).unwrap();
     }
-    let mesh = bisection.mesh();
-    let dual = dual(mesh);
-    let bytes = render_triangulation(&MeshPicture { title: "", mesh, dual: &dual, contact: None }).unwrap();
-    let picture = Image::decode(&bytes);
-    let grey = |p: [f64; 2]| picture.at(on_picture(mesh, p, &picture)).map(u32::from).iter().sum::<u32>();
-    let dark = 3 * 60;
-    assert!(grey([0.1, 0.1]) < dark, "lines lie on one another where the mesh is fine");
-    assert!(grey([0.9, 0.82]) > dark, "and there is room between them where it is not");
-    // On an edge of the first mesh a line is seen.
-    assert!(grey([0.875, 0.8]) < grey([0.9, 0.82]));
+    Mesh::clone(bisection.mesh())
+}
+
+#[test]
+fn all_of_a_triangulation_is_shown_and_darker_where_it_is_finer() {
+    let mesh = graded();
+    let dual = dual(&mesh);
+    let triangulation = |contact| {
+        let picture = MeshPicture { title: "", mesh: &mesh, dual: &dual, contact };
+        Image::decode(&render_triangulation(&picture).unwrap().encode(Format::Png).unwrap())
+    };
+    let picture = triangulation(None);
+    let window = Window::whole(&mesh, OVERVIEW);
+    let side = ENLARGED as usize;
+    assert_eq!(picture.width, LEFT + window.size()[0] + BETWEEN + side + RIGHT_WITH_AXIS);
+    let top = TOP + (side - window.size()[1]) / 2;
+    let color_at = |p: [f64; 2]| {
+        let [x, y] = window.at(p);
+        picture.at([LEFT as f64 + x, top as f64 + y])
+    };
+    assert_eq!([color_at([0.1, 0.1]), color_at([0.9, 0.82])], [force(1.0), force(0.0)]);
+    // Without a contact the part where the mesh is finest is enlarged.
+    let finest = Sizes::of(&mesh).finest.map(|a| mesh.points()[a]);
+    assert!(finest.iter().all(|&[x, y]| x.max(y) < 0.26), "{finest:?}");
+    // The rim is drawn where the contact ends, and only if there is one.
+    assert_eq!(picture.count(RIM), 0);
+    let left: Vec<bool> = mesh.points().iter().map(|&[x, _]| x < 0.6).collect();
+    let all = vec![true; left.len()];
+    let [legend, rim] = [&all, &left].map(|contact| triangulation(Some(contact)).count(RIM));
+    assert!(rim > legend + window.size()[1] / 2, "{rim} {legend}");
 }
 
 #[test]

@@ -4,13 +4,37 @@
 const SAME: f64 = 1e-9;
 
 /// A series in decimal logarithms; `None` where there is none.
-pub(super) struct Curve(Vec<Option<[f64; 2]>>);
+pub(super) struct Curve {
+    levels: Vec<Option<[f64; 2]>>,
+    /// The abscissae where there is rounding only.
+    at_rounding: Vec<f64>,
+}
 
 impl Curve {
     /// The curve of `values` over `h`.
     pub(super) fn new(h: &[f64], values: &[f64]) -> Curve {
         let logarithm = |value: f64| (value > 0.0 && value.is_finite()).then(|| value.log10());
-        Curve(h.iter().zip(values).map(|(&h, &value)| Some([logarithm(h)?, logarithm(value)?])).collect())
+        let level = |(&h, &value): (&f64, &f64)| Some([logarithm(h)?, logarithm(value)?]);
+        Curve { levels: h.iter().zip(values).map(level).collect(), at_rounding: Vec::new() }
+    }
+
+    /// The same curve, where what is below `floor` is taken for rounding.
+    pub(super) fn above(self, floor: f64) -> Curve {
+        let below = |point: &[f64; 2]| point[1] < floor;
+        Curve {
+            at_rounding: self.points().filter(below).map(|point| point[0]).collect(),
+            levels: self.levels.into_iter().map(|level| level.filter(|point| !below(point))).collect(),
+        }
+    }
+
+    /// The abscissae where there is rounding only.
+    pub(super) fn at_rounding(&self) -> impl Iterator<Item = f64> + '_ {
+        self.at_rounding.iter().copied()
+    }
+
+    /// Whether nothing but rounding is left on the last level.
+    pub(super) fn ends_at_rounding(&self) -> bool {
+        !self.at_rounding.is_empty() && self.levels.last().is_none_or(Option::is_none)
     }
 
     /// The curve through points in the order of their abscissae; those that have no logarithm are left out.
@@ -18,17 +42,17 @@ impl Curve {
         let mut points = points.to_vec();
         points.sort_by(|p, q| p[0].total_cmp(&q[0]));
         let [x, y] = [0, 1].map(|axis| points.iter().map(|point| point[axis]).collect::<Vec<f64>>());
-        Curve(Curve::new(&x, &y).points().map(Some).collect())
+        Curve { levels: Curve::new(&x, &y).points().map(Some).collect(), at_rounding: Vec::new() }
     }
 
     /// The points that can be drawn.
     pub(super) fn points(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
-        self.0.iter().flatten().copied()
+        self.levels.iter().flatten().copied()
     }
 
     /// Neighbouring levels that can both be drawn.
     pub(super) fn segments(&self) -> impl DoubleEndedIterator<Item = [[f64; 2]; 2]> + '_ {
-        self.0.windows(2).filter_map(|pair| Some([pair[0]?, pair[1]?]))
+        self.levels.windows(2).filter_map(|pair| Some([pair[0]?, pair[1]?]))
     }
 
     /// The slope of the last segment.

@@ -1,13 +1,14 @@
 //! The names of the curves with their slopes, at the curves' ends.
 
+use super::coordinates::Coordinates;
 use super::curve::Curve;
-use super::{MARKER, Plot, SIZE, color, marker};
+use super::marker::{self, MARKER, color};
 use crate::pictures::drawing::canvas::{Anchor, Canvas};
 use crate::pictures::drawing::color::{INK, PAPER, mix};
 use crate::pictures::drawing::frame::{NORMAL, SMALL};
 
-/// Names are cut off at this width.
-const LONGEST: f64 = 560.0;
+/// Names are cut off at this part of the width of the picture, or of the panel.
+const LONGEST: f64 = 0.31;
 /// From the plot to the markers.
 const LEADER: f64 = 46.0;
 /// From the middle of a marker to its name.
@@ -27,18 +28,25 @@ pub(super) struct Labels {
     /// What stands over the slopes.
     heading: String,
     left: f64,
+    right: f64,
 }
 
 impl Labels {
-    /// The labels, against the right edge of the picture.
-    pub(super) fn new(canvas: &Canvas, names: &[&str], heading: &str, slopes: &[Option<f64>]) -> Labels {
-        let names: Vec<String> = names.iter().map(|name| shortened(canvas, name)).collect();
-        let slopes: Vec<String> =
-            slopes.iter().map(|slope| slope.map_or_else(|| "–".to_owned(), decimal)).collect();
+    /// The labels, against the right one of these edges.
+    pub(super) fn new(
+        canvas: &Canvas,
+        names: &[String],
+        heading: &str,
+        slopes: &[String],
+        [left, right]: [f64; 2],
+    ) -> Labels {
+        let longest = LONGEST * (right - left);
+        let names: Vec<String> = names.iter().map(|name| shortened(canvas, name, longest)).collect();
         let widest = |texts: &[String]| texts.iter().map(|t| canvas.width(t, NORMAL)).fold(0.0, f64::max);
-        let columns = widest(&names) + GAP + widest(&slopes).max(canvas.width(heading, SMALL));
-        let left = SIZE[0] as f64 - GAP - columns - NAME - LEADER;
-        Labels { names, slopes, heading: heading.to_owned(), left }
+        let columns = widest(&names) + GAP + widest(slopes).max(canvas.width(heading, SMALL));
+        let right = right - GAP;
+        let left = right - columns - NAME - LEADER;
+        Labels { names, slopes: slopes.to_vec(), heading: heading.to_owned(), left, right }
     }
 
     /// Where the plot ends.
@@ -47,12 +55,12 @@ impl Labels {
     }
 
     /// Draws the labels at the heights of the curves' ends, with leaders where they had to give way.
-    pub(super) fn draw(&self, canvas: &mut Canvas, plot: &Plot, curves: &[Curve]) {
+    pub(super) fn draw(&self, canvas: &mut Canvas, plot: &Coordinates, curves: &[Curve]) {
         let ends: Vec<Option<[f64; 2]>> =
             curves.iter().map(|curve| curve.end().map(|end| plot.at(end))).collect();
         let (top, bottom) = (plot.frame.top + LINE / 2.0, plot.frame.bottom() - LINE / 2.0);
         let wanted: Vec<f64> = ends.iter().map(|end| end.map_or(bottom, |[_, y]| y)).collect();
-        let right = SIZE[0] as f64 - GAP;
+        let right = self.right;
         for (k, y) in spread(&wanted, LINE, [top, bottom]).into_iter().enumerate() {
             let at = [self.left + LEADER, y];
             if let Some([x, end]) = ends[k] {
@@ -68,21 +76,21 @@ impl Labels {
             canvas.text(&self.slopes[k], [right, y], NORMAL, INK, Anchor::Right);
         }
         if !self.names.is_empty() {
-            canvas.text(&self.heading, [right, plot.frame.top - 34.0], SMALL, INK, Anchor::Right);
+            canvas.text(&self.heading, [self.right, plot.frame.top - 34.0], SMALL, INK, Anchor::Right);
         }
     }
 }
 
 /// A number with two decimals and a true minus sign.
-fn decimal(value: f64) -> String {
+pub(super) fn decimal(value: f64) -> String {
     let value = format!("{value:.2}").replace('-', "−");
     if value == "−0.00" { "0.00".to_owned() } else { value }
 }
 
 /// A name on one line, ended by an ellipsis if it is too long.
-fn shortened(canvas: &Canvas, name: &str) -> String {
+fn shortened(canvas: &Canvas, name: &str, longest: f64) -> String {
     let letters: Vec<char> = name.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
-    let fitting = canvas.fitting(&letters, NORMAL, LONGEST);
+    let fitting = canvas.fitting(&letters, NORMAL, longest);
     if fitting == letters.len() {
         return letters.into_iter().collect();
     }

@@ -1,10 +1,18 @@
 //! Markers that are told apart by their shape alone.
 
 use crate::pictures::drawing::canvas::Canvas;
-use crate::pictures::drawing::color::Rgb;
+use crate::pictures::drawing::color::{CURVES, Rgb};
 
 /// The number of shapes.
 pub(super) const KINDS: usize = 7;
+
+/// The half width of a marker in pixels.
+pub(super) const MARKER: f64 = 11.0;
+
+/// The colour of a curve: beside its marker, what tells it from the others.
+pub(super) fn color(index: usize) -> Rgb {
+    CURVES[(index + index / KINDS) % CURVES.len()]
+}
 
 /// Draws the marker of curve `index`; shapes of one `radius` have about the same area.
 pub(super) fn draw(canvas: &mut Canvas, index: usize, at: [f64; 2], radius: f64, color: Rgb) {

@@ -1,12 +1,11 @@
 //! Slopes to compare with: dashed rays from one point, below the curves where the errors are large.
 
-use super::Plot;
+use super::coordinates::{Axes, Coordinates};
 use super::curve::Curve;
 use super::labels::spread;
 use crate::pictures::drawing::canvas::{Anchor, Canvas};
 use crate::pictures::drawing::color::INK;
 use crate::pictures::drawing::frame::SMALL;
-use crate::pictures::drawing::log_axis::LogAxis;
 
 /// The width of the rays as part of the plot.
 const WIDTH: f64 = 0.2;
@@ -26,7 +25,7 @@ pub(super) struct Fan {
 impl Fan {
     /// The rays in the lower corner on the side where the errors are large, below all curves there; `None` without
     /// slopes or without a segment to compare them with.
-    pub(super) fn new(slopes: &[f64], x: &LogAxis, y: &LogAxis, curves: &[Curve]) -> Option<Fan> {
+    pub(super) fn new(slopes: &[f64], Axes { x, y }: &Axes, curves: &[Curve]) -> Option<Fan> {
         let mut slopes: Vec<f64> = slopes.iter().copied().filter(|slope| slope.is_finite()).collect();
         slopes.sort_by(f64::total_cmp);
         slopes.dedup();
@@ -54,7 +53,7 @@ impl Fan {
     }
 
     /// Draws the rays with their slopes, over a horizontal line.
-    pub(super) fn draw(&self, canvas: &mut Canvas, plot: &Plot) {
+    pub(super) fn draw(&self, canvas: &mut Canvas, plot: &Coordinates) {
         let end = |slope: f64| plot.at([self.apex[0] + self.run, self.apex[1] + slope * self.run]);
         let apex = plot.at(self.apex);
         canvas.line([apex, end(0.0)], 1.5, INK);

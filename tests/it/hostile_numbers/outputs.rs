@@ -10,7 +10,7 @@ use membrane_contact::flux::{FluxDefects, Reconstruction, Reconstructor};
 use membrane_contact::mesh::{DualMesh, SubTriangulation};
 use membrane_contact::output::{Seconds, Summary, write_dual_vtu, write_flux_vtu, write_vtu};
 use membrane_contact::pictures::membranes::{Picture, render};
-use membrane_contact::pictures::{MeshPicture, render_mesh, render_triangulation};
+use membrane_contact::pictures::{Drawing, Format, MeshPicture, render_mesh, render_triangulation};
 use membrane_contact::qp::{
     QpPart, QpProblem, contact_qp, read_answer, write_matrix_market, write_npz, write_qps,
 };
@@ -96,14 +96,23 @@ pub fn pictures(hostile: &Hostile, d: &Discretization, bounded: &Bounded) -> Res
     let solution = &bounded.solution;
     let failed = |what: &str, error: &dyn std::fmt::Display| format!("{what}: {error}");
     let picture = Picture::of(hostile.name, d.mesh(), solution);
-    render(&picture).map_err(|error| failed("membranes.png", &error))?;
+    encode("membranes", render(&picture).map_err(|error| error.to_string()))?;
     let sub = SubTriangulation::new(d.mesh()).map_err(|error| failed("S_h", &error))?;
     let dual = DualMesh::new(d.mesh(), &sub);
     let picture =
         MeshPicture { title: hostile.name, mesh: d.mesh(), dual: &dual, contact: Some(solution.contact()) };
-    render_mesh(&picture).map_err(|error| failed("mesh.png", &error))?;
-    render_triangulation(&picture).map_err(|error| failed("mesh.png of adapt", &error))?;
-    Ok(())
+    encode("mesh", render_mesh(&picture).map_err(|error| error.to_string()))?;
+    encode("mesh of adapt", render_triangulation(&picture).map_err(|error| error.to_string()))
+}
+
+/// Whether a picture was drawn, can be encoded, and lines lie at finite places.
+fn encode(name: &str, drawing: Result<Drawing, String>) -> Result<(), String> {
+    let drawing = drawing.map_err(|error| format!("{name}: {error}"))?;
+    let bytes = |format| drawing.encode(format).map_err(|error| format!("{name}: {error}"));
+    bytes(Format::Png)?;
+    let svg = String::from_utf8(bytes(Format::Svg)?).map_err(|error| format!("{name}: {error}"))?;
+    let strange = ["NaN", "inf "].iter().find(|number| svg.contains(*number));
+    strange.map_or(Ok(()), |number| Err(format!("{name}: the SVG has {number}")))
 }
 
 fn fluxes(hostile: &Hostile, d: &Discretization, bounded: &Bounded) -> Result<(), String> {

@@ -7,7 +7,7 @@ use crate::cli::run::files::{ROWS, ROWS_TABLE, TIMES};
 use crate::cli::run::folder::Folder;
 use crate::cli::run::input::{self, Input};
 use crate::cli::run::memory::Memory;
-use crate::pictures::{Times, TimesPicture, render_times};
+use crate::pictures::{Format, Times, TimesPicture, render_times};
 use crate::study::comparison::{Curve, ORIGIN, Row, curves, markdown};
 
 /// The slopes to compare with: work in proportion to the vertices, and that of a sparse factorisation in the plane.
@@ -56,22 +56,28 @@ pub(super) fn write_results(folder: &Folder, title: &str, rows: &[Row]) -> Resul
     let drawn: Vec<Times> = names
         .iter()
         .zip(&points)
-        .filter(|(_, points)| !points.is_empty())
-        .map(|(name, points)| Times { name, points })
+        .zip(&curves)
+        .filter(|((_, points), _)| !points.is_empty())
+        .map(|((name, points), curve)| Times { name, group: group(curve), points })
         .collect();
     let title = format!("{title}: time to a certified solution");
     let png = render_times(&TimesPicture { title: &title, curves: &drawn, slopes: &SLOPES })
+        .encode(Format::Png)
         .map_err(|error| Failure::Input(format!("{TIMES}: {error}")))?;
     folder.write(TIMES, |out| out.write_all(&png))
 }
 
-/// Names that tell the curves apart: of the solver, of who ran it if that was not this program, of the problem if there
-/// are several.
+/// Who ran a solver.
+fn group<'a>(curve: &Curve<'a>) -> &'a str {
+    if curve.origin == ORIGIN { "membranes" } else { curve.origin }
+}
+
+/// Names that tell the curves of one group apart: of the solver, and of the problem if there are several.
 fn names(curves: &[Curve]) -> Vec<String> {
     let several = curves.iter().any(|curve| curve.problem != curves[0].problem);
     let name = |curve: &Curve| {
         let problem = if several { format!(", {}", curve.problem) } else { String::new() };
-        format!("{}{problem}", solver_name(curve))
+        format!("{}{problem}", curve.solver)
     };
     curves.iter().map(name).collect()
 }
