@@ -42,7 +42,7 @@ impl QpBackend for MethodOfMultipliers {
                 status = Status::Solved;
                 break;
             }
-            if options.time_limit.is_some_and(|seconds| start.elapsed().as_secs_f64() > seconds) {
+            if options.time_limit.is_some_and(|limit| limit.left_since(start).is_none()) {
                 status = Status::TimeLimit;
                 break;
             }

@@ -1,16 +1,20 @@
 //! The action `lambda_h` of section 4.1, and the certificate that ties it to the displacements.
 
 mod certificate;
+mod extension;
 mod pairing;
+mod projection;
 mod recovery;
 mod residuals;
 mod solution;
 mod sums;
-#[cfg(test)]
+#[cfg(all(test, feature = "clarabel"))]
 mod tests;
 
 pub use certificate::{Reason, Rejected, certify};
+pub(crate) use extension::extend_to_boundary;
 pub use pairing::{equilibrium, is_in_cone, pairing, project, variation};
+pub use projection::CutOff;
 pub use recovery::Action;
 pub use residuals::{Residual, Residuals};
 pub use solution::ContactSolution;

@@ -2,13 +2,13 @@
 
 mod bound;
 mod lift;
-mod multigrid;
 mod norms;
 mod residual;
+mod spaces;
 #[cfg(test)]
 mod tests;
 
-pub use bound::{BoundParts, ErrorBound};
+pub use bound::{BoundParts, ErrorBound, LoadWarning};
 pub use lift::DualNorm;
 pub use norms::{ContactAreas, ErrorNorms, energy_error};
 pub use residual::residual_indicators;
@@ -17,9 +17,11 @@ use thiserror::Error;
 
 use crate::discretization::Discretization;
 use crate::mesh::MeshError;
+use crate::problem::EvaluationError;
 
 /// The error of a solution cannot be measured.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum MeasureError {
     /// Solution and discretization do not belong together.
     #[error(
@@ -47,9 +49,37 @@ pub enum MeasureError {
         /// The limit.
         iterations: usize,
     },
+    /// The height has no value between the vertices of the boundary.
+    #[error("height g {source}: it must be finite on the whole boundary")]
+    Height {
+        /// Where, or why.
+        source: EvaluationError,
+    },
+    /// A load has no value between the mesh and the circle of the disk that it stands for.
+    #[error("load f{membrane} {source}: it must be finite on the whole domain")]
+    Load {
+        /// 1 or 2.
+        membrane: usize,
+        /// Where, or why.
+        source: EvaluationError,
+    },
+    /// The exact solution or the discrete one is not finite somewhere.
+    #[error(
+        "the error against the exact solution is not finite: the displacements or the solution's parameters are too large"
+    )]
+    NotFinite,
 }
 
 impl MeasureError {
+    fn of_height(source: EvaluationError) -> Self {
+        Self::Height { source }
+    }
+
+    /// Of membrane 0 or 1.
+    fn of_load(membrane: usize, source: EvaluationError) -> Self {
+        Self::Load { membrane: membrane + 1, source }
+    }
+
     /// Refuses vectors that are not over the vertices of `d`.
     fn check<V: AsRef<[f64]>>(d: &Discretization, vectors: impl IntoIterator<Item = V>) -> Result<(), Self> {
         let vertices = d.mesh().points().len();

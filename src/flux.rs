@@ -34,6 +34,7 @@ pub(crate) use wedges::WedgeFluxes;
 /// diameter `h` costs a guaranteed bound `h / pi` times its norm: as much as the flux itself where only a larger cell
 /// balances.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Reconstruction {
     /// `div t_ih = f_a|_K - (-1)^i lambda_a` on every triangle of `S_h`; of the circulations around each vertex that this
     /// leaves open, the one next to `-mu_i grad u_ih` in `L2`. Gives guaranteed bounds.

@@ -1,10 +1,14 @@
 //! Lengths, areas and curves in the plane.
 
+mod inequalities;
 mod interface;
 mod ring;
 mod triangle;
 
 pub use interface::Interface;
 
+pub(crate) use inequalities::{friedrichs, poincare};
 pub(crate) use ring::ring_area;
-pub(crate) use triangle::{barycentric_gradients, distance_sq, twice_signed_area};
+#[cfg(feature = "pictures")]
+pub(crate) use triangle::barycentric_gradients;
+pub(crate) use triangle::{distance_sq, twice_signed_area};

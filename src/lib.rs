@@ -9,6 +9,8 @@
 #![deny(missing_docs)]
 
 mod text;
+mod numeric;
+mod parallel;
 pub mod geometry;
 pub mod problem;
 pub mod formats;
@@ -22,6 +24,7 @@ pub mod action;
 pub mod flux;
 pub mod estimate;
 pub mod study;
+#[cfg(feature = "files")]
 pub mod output;
 #[cfg(feature = "pictures")]
 pub mod pictures;
@@ -29,6 +32,17 @@ pub mod pictures;
 pub mod cli;
 
 pub use sprs;
+
+/// What most programs need: `use membrane_contact::prelude::*`.
+pub mod prelude {
+    pub use crate::action::{ContactSolution, certify};
+    pub use crate::discretization::Discretization;
+    pub use crate::estimate::ErrorBound;
+    pub use crate::mesh::{Mesh, MeshSize, Pattern, disk, generate, l_shape, polygon, rectangle};
+    pub use crate::problem::{ContactProblem, Domain, Expression, Function};
+    pub use crate::solver::{ActiveSet, Auto, ContactSolver, Multigrid, QpSolver, SolverOptions};
+    pub use crate::study::{Solved, solve};
+}
 
 /// The README's code is compiled and run.
 #[cfg(doctest)]

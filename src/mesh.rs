@@ -1,5 +1,6 @@
 //! The triangulation `T_h` of the domain: checked construction, generators, the Gmsh reader, refinement.
 
+mod ancestry;
 mod check;
 mod dual;
 mod generate;
@@ -8,95 +9,21 @@ mod refine;
 #[cfg(test)]
 pub(crate) mod samples;
 mod topology;
+mod triangulation;
 
-use std::sync::Arc;
-
-use crate::geometry::{distance_sq, twice_signed_area};
-
+pub use ancestry::Parents;
 pub use check::{MeshError, MeshQuality};
 pub use dual::{DualMesh, SubTriangulation};
 pub use generate::{
     GenerateError, MeshSize, Pattern, disk, estimated_vertices, generate, l_shape, polygon, rectangle,
 };
-pub use read::ReadError;
-pub use refine::{Bisection, MeshFamily, Parents, Refinement};
+#[cfg(feature = "cli")]
+pub(crate) use read::gmsh_nodes;
+pub use read::{GmshMesh, ReadError};
+pub use refine::{Bisection, MeshFamily, Refinement};
+pub use triangulation::{Mesh, VertexKind};
 
 #[cfg(feature = "cli")]
 pub(crate) use generate::MAX_VERTICES;
 pub(crate) use refine::Circle;
-pub(crate) use topology::{HalfEdges, VertexTriangles};
-
-/// Where a vertex lies.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum VertexKind {
-    /// Inside the domain: it carries unknowns (`a` in `V_h`).
-    Interior,
-    /// On the boundary: `u1 = g`, `u2 = 0`.
-    Boundary,
-    /// In no triangle: kept in the output, left out of the system.
-    Unused,
-}
-
-/// A conforming triangulation of a bounded set of the plane: several components and holes are allowed.
-///
-/// Valid by construction ([`Mesh::new`]) and immutable; [`Mesh::refine`] returns a new one.
-#[derive(Debug, Clone)]
-pub struct Mesh {
-    points: Vec<[f64; 2]>,
-    triangles: Vec<[usize; 3]>,
-    kind: Vec<VertexKind>,
-    ancestry: Vec<Arc<Parents>>,
-}
-
-impl Mesh {
-    /// The vertices, in the order in which they were given. Shape: `vertices x 2`; unit: length.
-    pub fn points(&self) -> &[[f64; 2]] {
-        &self.points
-    }
-
-    /// The triangles, as vertex numbers in counterclockwise order. Shape: `triangles x 3`.
-    pub fn triangles(&self) -> &[[usize; 3]] {
-        &self.triangles
-    }
-
-    /// The kind of each vertex. Shape: `vertices`.
-    pub fn kind(&self) -> &[VertexKind] {
-        &self.kind
-    }
-
-    /// The corners of triangle `t`, counterclockwise.
-    pub fn corners(&self, t: usize) -> [[f64; 2]; 3] {
-        self.triangles[t].map(|a| self.points[a])
-    }
-
-    /// The area of triangle `t`, positive.
-    pub fn triangle_area(&self, t: usize) -> f64 {
-        0.5 * twice_signed_area(self.corners(t))
-    }
-
-    /// The square of the diameter `h_K` of triangle `t`, its longest edge.
-    pub(crate) fn diameter_sq(&self, t: usize) -> f64 {
-        let corners = self.corners(t);
-        (0..3).map(|i| distance_sq(corners[i], corners[(i + 1) % 3])).fold(0.0, f64::max)
-    }
-
-    /// The area of the domain `|omega|`.
-    pub fn area(&self) -> f64 {
-        (0..self.triangles.len()).map(|t| self.triangle_area(t)).sum()
-    }
-
-    /// The smallest rectangle around the triangles, as `(lower left, upper right)`.
-    pub fn bounding_box(&self) -> ([f64; 2], [f64; 2]) {
-        let mut lower = [f64::INFINITY; 2];
-        let mut upper = [f64::NEG_INFINITY; 2];
-        for (point, &kind) in self.points.iter().zip(&self.kind) {
-            if kind != VertexKind::Unused {
-                for axis in 0..2 {
-                    lower[axis] = lower[axis].min(point[axis]);
-                    upper[axis] = upper[axis].max(point[axis]);
-                }
-            }
-        }
-        (lower, upper)
-    }
-}
+pub(crate) use topology::{HalfEdges, VertexTriangles, corner_of};

@@ -5,5 +5,6 @@ mod correction;
 mod direct;
 pub(crate) mod half;
 pub(crate) mod hierarchy;
+pub(crate) mod linear;
 pub(crate) mod sweep;
 pub(crate) mod truncation;

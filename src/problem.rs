@@ -14,7 +14,7 @@ mod function;
 pub use cases::{Case, CaseError, ExactSolution, Parameter, Range};
 pub use domain::Domain;
 pub use expression::{Expression, ExpressionError};
-pub use function::Function;
+pub use function::{EvaluationError, Function};
 
 use thiserror::Error;
 
@@ -127,6 +127,7 @@ impl ContactProblemBuilder {
 
 /// Why the data do not make a problem.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum ProblemError {
     /// A tension out of range.
     #[error("tension mu{membrane} is {}: give a positive, finite number", Number(*value))]

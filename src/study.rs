@@ -2,11 +2,13 @@
 
 mod accuracy;
 mod adapt;
+#[cfg(feature = "files")]
 pub mod comparison;
 mod converge;
 mod fit;
 mod marking;
 mod prolongation;
+mod solve;
 mod table;
 
 pub use accuracy::{AccuracyError, Bounded, Tolerance, solve_bounded};
@@ -14,4 +16,5 @@ pub use adapt::{AdaptiveLevel, AdaptiveStudy, Checkpoint};
 pub use converge::{ConvergenceStudy, StudyError};
 pub use fit::exponent;
 pub use marking::mark;
+pub use solve::{SolveError, Solved, solve};
 pub use table::{LevelErrors, MEASURES, Measure, fitted_rate, markdown, rate};

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # What the crate is made of: licences, sources and doubles of its dependencies, and the Rust that it needs at least.
-# Each check has a twin that must fail. `cargo deny` comes from crates.io into target/tools on the first run.
+# Each check has a negative test that must fail. `cargo deny` comes from crates.io into target/tools on the first run.
 # Vulnerabilities need the network beyond crates.io, so they are for whoever has it: `cargo deny check advisories`.
 set -euo pipefail
 cd "$(dirname "$0")/.."

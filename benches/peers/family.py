@@ -50,25 +50,22 @@ cells = {cells}
 class Exported:
     """The exported QP, minimise 1/2 x'Px + q'x subject to A x >= b, in numbers of its own size.
 
-    Shapes: `P` (2m, 2m), full; `q` (2m,); `A` (m, 2m); `b` (m,), for m = (n-1)^2 interior vertices.
+    Shapes: `P` (2m, 2m), full; `q` (2m,); `A` (m, 2m); `b` (m,), for m = (n-1)^2 interior vertices. The scales are the
+    sizes of x and of P x + q.
     """
 
     P: sp.csc_matrix
     q: np.ndarray
     A: sp.csc_matrix
     b: np.ndarray
+    displacement_scale: float
+    force_scale: float
 
     @property
     def stiffness(self) -> sp.csr_matrix:
         """`K` on the interior vertices, shape (m, m), float64 with int32 indices."""
         count = self.b.size
         return sp.csr_matrix(self.P[:count, :count] / TENSION[0])
-
-
-def scales(cells: int) -> tuple[float, float]:
-    """The sizes of x and of P x + q, as `Scales` of the Rust library has them."""
-    greatest_stretch = GREATEST_LOAD / min(TENSION) / 8.0
-    return HEIGHT + greatest_stretch, GREATEST_LOAD / cells**2
 
 
 def export(membranes: Path, cells: int, folder: Path) -> Path:
@@ -89,7 +86,8 @@ def read(path: Path) -> Exported:
             indices, start = (arrays[f"{name}_{part}"].astype(np.int32) for part in ("indices", "indptr"))
             return sp.csc_matrix((arrays[f"{name}_data"], indices, start), tuple(arrays[f"{name}_shape"]))
 
-        return Exported(matrix("P"), arrays["q"], matrix("A"), arrays["b"])
+        scales = (float(arrays[name]) for name in ("displacement_scale", "force_scale"))
+        return Exported(matrix("P"), arrays["q"], matrix("A"), arrays["b"], *scales)
 
 
 def work_unit(stiffness: sp.csr_matrix) -> float:

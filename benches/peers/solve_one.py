@@ -22,7 +22,7 @@ import solvers
 
 def main(problem: str, cells: str, solver: str, tolerance: str, answer: str, result: str) -> None:
     exported = family.read(Path(problem))
-    length, force = family.scales(int(cells))
+    length, force = exported.displacement_scale, exported.force_scale
     # x = length z, y = force v: (z, v) is optimal for the program in which z and P z + q have the size 1. Its A x >= b
     # is qpsolvers' G x <= h with the signs changed, and its y is their z.
     program = qpsolvers.Problem(

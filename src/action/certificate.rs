@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use super::projection::Projection;
 use super::{Action, ContactSolution, Residuals};
 use crate::discretization::Discretization;
 use crate::qp::Status;
@@ -9,6 +10,11 @@ use crate::solver::{Candidate, Statistics};
 
 /// Checks a candidate against `K`, `F`, `g` and hands it out as a solution when every residual, beyond what rounding of
 /// the terms explains, is at most `tolerance`.
+///
+/// The solution is exactly in the cones (3.3), (4.2) and exactly complementary (4.8), which a candidate is up to its residuals
+/// only: where both a gap and an action are left, the smaller one, in units of the data, becomes zero. The residuals
+/// are those of the candidate and count all that is cut off, a positive gap beside a positive action by their product; see
+/// [`CutOff`](super::CutOff).
 ///
 /// # Errors
 /// [`Rejected`], with all residuals, when one is larger or not a number, or when a vector has the wrong length.
@@ -32,7 +38,10 @@ pub fn certify(
             let reason = Reason::Residual { check, value: residual.value, tolerance };
             Err(Box::new(Rejected { reason, residuals: Some(residuals), statistics }))
         }
-        _ => Ok(ContactSolution::new(d, displacement, &action, residuals, statistics)),
+        _ => {
+            let projection = Projection::new(d, displacement, &multiplier, action);
+            Ok(ContactSolution::new(d, projection, residuals, statistics))
+        }
     }
 }
 
@@ -68,6 +77,7 @@ impl Rejected {
 
 /// Why a candidate is rejected.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum Reason {
     /// A residual is too large.
     #[error("{check} {value:.1e} is above the tolerance {tolerance:.1e}")]

@@ -1,8 +1,8 @@
 //! The discrete space `Y_h` of actions, its pairing with displacements, and the full discrete problem (4.7).
 
 use crate::discretization::Discretization;
-use crate::fem::{NotFinite, load};
-use crate::problem::Function;
+use crate::fem::load;
+use crate::problem::{EvaluationError, Function};
 
 /// `<rho_h, v_h>_h = sum_a rho_a v_h(a) int phi_a` (4.3).
 ///
@@ -14,8 +14,8 @@ pub fn pairing(d: &Discretization, rho: &[f64], v: &[f64]) -> f64 {
 /// `Pi_h rho` (4.9) over unknowns: the element of `Y_h` with `<Pi_h rho, phi_a>_h = int rho phi_a`.
 ///
 /// # Errors
-/// [`NotFinite`] when `rho` is NaN or infinite at a quadrature point.
-pub fn project(d: &Discretization, rho: &Function) -> Result<Vec<f64>, NotFinite> {
+/// [`EvaluationError`] when `rho` fails, or is NaN or infinite at a quadrature point.
+pub fn project(d: &Discretization, rho: &Function) -> Result<Vec<f64>, EvaluationError> {
     let moments = load(d.mesh(), rho)?;
     Ok(d.interior().iter().map(|&a| moments[a] / d.dual_area()[a]).collect())
 }
@@ -147,7 +147,7 @@ mod tests {
             assert!((pairing(&d, &projected, &hat) - moments[a]).abs() < ROUNDING, "(4.9)");
         }
         let [x, y] = mesh.points()[d.interior()[0]];
-        assert!((projected[0] - rho.eval(x, y)).abs() > ROUNDING, "it is no interpolation");
+        assert!((projected[0] - rho.eval(x, y).unwrap()).abs() > ROUNDING, "it is no interpolation");
         assert!(project(&d, &Function::Constant(f64::NAN)).is_err());
     }
 }

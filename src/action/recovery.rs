@@ -1,6 +1,6 @@
 //! Local post-processing (4.5): the action as each membrane sees it.
 
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 use crate::discretization::Discretization;
 

@@ -2,12 +2,13 @@
 
 use std::ops::Range;
 
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 use super::Action;
 use super::sums::sums;
 use crate::discretization::Discretization;
 use crate::mesh::VertexKind;
+use crate::numeric::or_infinite;
 
 /// Vertices that are worked on together.
 const BLOCK: usize = 4096;
@@ -118,7 +119,7 @@ impl Residuals {
         }
     }
 
-    /// The largest of the checks beyond rounding: what is held against the tolerance.
+    /// The largest of the checks beyond rounding: what is compared with the tolerance.
     pub fn beyond_rounding(&self) -> f64 {
         self.named().into_iter().map(|(_, residual)| residual.beyond_rounding).fold(0.0, f64::max)
     }
@@ -140,7 +141,6 @@ impl Residuals {
 impl Residual {
     /// A defect, and the rounding that is allowed in it.
     fn new(defect: f64, rounding: f64) -> Self {
-        let or_infinite = |x: f64| if x.is_nan() { f64::INFINITY } else { x };
         Self { value: or_infinite(defect), beyond_rounding: or_infinite(defect - rounding) }
     }
 
@@ -183,7 +183,8 @@ fn hat_integrals(d: &Discretization) -> Vec<f64> {
         integrals
     };
     let triangles = d.mesh().triangles().len();
-    let (mut integrals, others) = rayon::join(|| over(0..triangles / 2), || over(triangles / 2..triangles));
+    let (mut integrals, others) =
+        crate::parallel::join(|| over(0..triangles / 2), || over(triangles / 2..triangles));
     integrals.iter_mut().zip(others).for_each(|(integral, other)| *integral += other);
     integrals
 }

@@ -1,56 +1,82 @@
 //! A certified solution.
 
-use rayon::prelude::*;
-
+use super::projection::{Before, Projection};
 use super::sums::sums;
-use super::{Action, Residuals};
+use super::{CutOff, Residuals, extend_to_boundary};
 use crate::discretization::Discretization;
-use crate::mesh::VertexKind;
 use crate::solver::Statistics;
-
-/// Vertices that are worked on together.
-const BLOCK: usize = 4096;
-
-/// Membranes closer than this fraction of the displacements' scale touch: the rounding of the displacements.
-const TOUCHING: f64 = 1e-12;
 
 /// Displacements, action and contact set of (3.4), (4.5): made by [`certify`](super::certify) only.
 ///
-/// Vectors are over the vertices of the mesh, in its order.
+/// Vectors are over the vertices of the mesh, in its order. At each interior vertex one of three things is true, to the last
+/// bit: the membranes are apart, `u1 > u2` and `lambda_a = 0`; they touch and press, `u1 = u2` and `lambda_a > 0`; they touch
+/// without a force, `u1 = u2` and `lambda_a = 0`. *Contact* is where they touch, *pressed* where there is a force.
 #[derive(Debug, Clone)]
 pub struct ContactSolution {
     displacement: [Vec<f64>; 2],
     lambda: Vec<f64>,
     contact: Vec<bool>,
     energy: f64,
-    contact_area: f64,
-    total_force: f64,
+    inside: Totals,
+    extended: Totals,
+    cut_off: CutOff,
+    before: Option<Before>,
     residuals: Residuals,
     statistics: Statistics,
+}
+
+/// Sums over dual cells.
+#[derive(Debug, Clone, Copy)]
+struct Totals {
+    area: f64,
+    force: f64,
+}
+
+impl Totals {
+    /// Over the cells of all vertices that touch.
+    fn new(d: &Discretization, contact: &[bool], lambda: &[f64]) -> Self {
+        let over_cells = |a: usize| [f64::from(contact[a]), lambda[a]].map(|value| d.dual_area()[a] * value);
+        let [area, force] = sums(contact.len(), over_cells);
+        Self { area, force }
+    }
+
+    /// Likewise, with the cells of the boundary to which the contact is continued.
+    fn extended(
+        self,
+        d: &Discretization,
+        displacement: &[Vec<f64>; 2],
+        contact: &[bool],
+        lambda: &[f64],
+    ) -> Self {
+        let mut lambda = lambda.to_vec();
+        let at_boundary = extend_to_boundary(d, displacement, &mut lambda);
+        if !at_boundary.contains(&true) {
+            return self;
+        }
+        let contact: Vec<bool> =
+            contact.iter().zip(at_boundary).map(|(contact, edge)| contact | edge).collect();
+        Self::new(d, &contact, &lambda)
+    }
 }
 
 impl ContactSolution {
     pub(super) fn new(
         d: &Discretization,
-        displacement: [Vec<f64>; 2],
-        action: &[Action],
+        projection: Projection,
         residuals: Residuals,
         statistics: Statistics,
     ) -> Self {
-        let lambda = nonzero_beyond_rounding(d, action);
-        let contact = contact_set(d, &displacement, &lambda);
-        let over_cells = |k: usize| {
-            let a = d.interior()[k];
-            [f64::from(contact[a]), lambda[a]].map(|value| d.dual_area()[a] * value)
-        };
-        let [contact_area, total_force] = sums(d.interior().len(), over_cells);
+        let Projection { displacement, lambda, contact, cut_off, before } = projection;
+        let inside = Totals::new(d, &contact, &lambda);
         Self {
             energy: energy(d, &displacement),
-            contact_area,
-            total_force,
+            inside,
+            extended: inside.extended(d, &displacement, &contact, &lambda),
             displacement,
             lambda,
             contact,
+            cut_off,
+            before,
             residuals,
             statistics,
         }
@@ -61,19 +87,20 @@ impl ContactSolution {
         &self.displacement
     }
 
-    /// The gap `u1 - u2`. Unit: length.
+    /// The gap `u1 - u2`: not negative, and zero exactly where the membranes touch. Unit: length.
     pub fn gap(&self) -> Vec<f64> {
         let [u1, u2] = &self.displacement;
         u1.iter().zip(u2).map(|(u1, u2)| u1 - u2).collect()
     }
 
     /// `lambda_a`, the values of `lambda_h` on the dual cells `D_a`; zero on the boundary, where it has none. Unit: force
-    /// per area. Values that are no more than the rounding of what cancels in them are zero.
+    /// per area. Not negative, and positive only where the membranes touch; values that are no more than the rounding of what
+    /// cancels in them are zero.
     pub fn lambda(&self) -> &[f64] {
         &self.lambda
     }
 
-    /// Whether the membranes touch at a vertex; false on the boundary, where they are held.
+    /// Whether the membranes touch at a vertex, with a force or without; false on the boundary, where they are held.
     pub fn contact(&self) -> &[bool] {
         &self.contact
     }
@@ -83,14 +110,41 @@ impl ContactSolution {
         self.energy
     }
 
-    /// The area of the dual cells of the vertices in contact.
+    /// The area of the dual cells of the vertices in contact: the paper's, whose cells belong to the interior vertices.
     pub fn contact_area(&self) -> f64 {
-        self.contact_area
+        self.inside.area
     }
 
-    /// `int lambda_h`, the force with which the membranes push.
+    /// `int lambda_h`, the force with which the membranes push: the paper's, with `lambda_h = 0` on the cells of the boundary.
     pub fn total_force(&self) -> f64 {
-        self.total_force
+        self.inside.force
+    }
+
+    /// The contact area with the dual cells of those boundary vertices around which the membranes touch in all triangles:
+    /// what is in contact where it reaches the edge.
+    pub fn contact_area_extended(&self) -> f64 {
+        self.extended.area
+    }
+
+    /// The integral of the action continued to these cells, on each by the mean of its neighbours: the action of the bound of
+    /// the error. Where contact reaches the edge, [`total_force`](Self::total_force) misses the cells along it, and this does
+    /// not.
+    pub fn total_force_extended(&self) -> f64 {
+        self.extended.force
+    }
+
+    /// The displacements and the action, over vertices, whose residuals were certified: the solution's own but for an answer
+    /// that had both a gap and a multiplier somewhere. Certified again, they give this solution again.
+    pub fn certified(&self) -> (&[Vec<f64>; 2], &[f64]) {
+        match &self.before {
+            Some(before) => (&before.displacement, &before.lambda),
+            None => (&self.displacement, &self.lambda),
+        }
+    }
+
+    /// What was cut off to make the solution exactly complementary.
+    pub fn cut_off(&self) -> CutOff {
+        self.cut_off
     }
 
     /// The residuals that were certified.
@@ -102,25 +156,6 @@ impl ContactSolution {
     pub fn statistics(&self) -> &Statistics {
         &self.statistics
     }
-}
-
-fn nonzero_beyond_rounding(d: &Discretization, action: &[Action]) -> Vec<f64> {
-    let cleaned = |action: &Action| {
-        if action.lambda.abs() <= action.lambda_rounding { 0.0 } else { action.lambda }
-    };
-    d.extend(&action.iter().map(cleaned).collect::<Vec<_>>(), |_| 0.0)
-}
-
-/// A vertex is in contact when the gap is zero to rounding or, relative to the data, smaller than the action: for an
-/// answer that is not polished, both may be positive.
-fn contact_set(d: &Discretization, [u1, u2]: &[Vec<f64>; 2], lambda: &[f64]) -> Vec<bool> {
-    let scales = d.scales();
-    let touches = |a: usize| {
-        let gap = (u1[a] - u2[a]) / scales.displacement;
-        d.mesh().kind()[a] == VertexKind::Interior
-            && (gap <= TOUCHING || gap < lambda[a] / scales.force_density)
-    };
-    (0..lambda.len()).into_par_iter().with_min_len(BLOCK).map(touches).collect()
 }
 
 fn energy(d: &Discretization, [u1, u2]: &[Vec<f64>; 2]) -> f64 {

@@ -1,6 +1,6 @@
 //! Sums over many vertices.
 
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 /// Terms that are added up together.
 const BLOCK: usize = 4096;

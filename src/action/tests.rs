@@ -2,10 +2,11 @@
 
 use super::{Action, Reason, Residual, Residuals, certify};
 use crate::discretization::Discretization;
+use crate::mesh::samples::irregular;
 use crate::mesh::{Mesh, Pattern, VertexKind, rectangle};
 use crate::problem::{ContactProblem, Function};
-use crate::qp::Clarabel;
-use crate::solver::{Candidate, ContactSolver, QpSolver, SolverOptions};
+use crate::qp::{Clarabel, QpBackend, QpOptions, contact_qp};
+use crate::solver::{ActiveSet, Candidate, ContactSolver, QpSolver, SolverOptions};
 
 /// What is asked of the backend and of the certificate.
 const TOLERANCE: f64 = 1e-8;
@@ -179,7 +180,7 @@ fn nan_and_infinity_never_pass() {
 }
 
 #[test]
-fn an_early_stop_is_seen_and_mended_by_the_polish() {
+fn an_early_stop_is_seen_and_repaired_by_the_polish() {
     let mesh = mesh();
     let d = Discretization::new(&problem(0.0), mesh.clone()).unwrap();
     let stopped = solve(&d, false, Some(3));
@@ -223,4 +224,24 @@ fn vectors_of_the_wrong_length_are_rejected() {
     let mut long = sound;
     long.displacement[1].push(0.0);
     assert_eq!(certify(&d, long, TOLERANCE).unwrap_err().reason, Reason::Lengths);
+}
+
+/// What any solver of the exported program finds as its least value is the energy in the summary.
+#[test]
+fn the_optimum_of_the_program_is_the_energy() {
+    let mesh = irregular(8);
+    let height = Function::from_fn(|x, y| 0.1 + 0.05 * x + 0.02 * y);
+    let load = Function::from_fn(|x, _| x - 15.0);
+    let problem =
+        ContactProblem::builder().tension(1.0, 3.0).load(load, 10.0).height(height).build().unwrap();
+    let d = Discretization::new(&problem, mesh).unwrap();
+    let qp = contact_qp(&d);
+    let options = QpOptions { tolerance: 1e-12, ..QpOptions::default() };
+    let optimum = QpBackend::solve(&mut Clarabel, &qp.nondimensional(), &options).unwrap();
+    let x: Vec<f64> = optimum.x.iter().map(|z| qp.primal_scale() * z).collect();
+    let solution = certify(&d, ActiveSet.solve(&d, &SolverOptions::default()).unwrap(), 1e-8).unwrap();
+    let defect = |value: f64| (value / solution.energy() - 1.0).abs();
+    // The energy is stationary at the optimum: its error is the square of the solver's.
+    assert!(defect(qp.objective(&x)) < 1e-9, "{:e}", defect(qp.objective(&x)));
+    assert!(defect(qp.objective(&x) - qp.constant()) > 1e-3, "without the constant it is not");
 }

@@ -2,17 +2,22 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
 
-use super::case_file::BackendName;
-use super::pictures::PictureArguments;
+use super::case::BackendName;
+use crate::qp::TimeLimit;
 use crate::study::Tolerance;
 
 /// Where results go when no folder is named: a folder of this one, called like the case file.
 const OUTPUT: &str = "out";
 
-/// Nobody waits longer for a solve, seconds: a year. Far larger numbers are no durations.
-const LONGEST: f64 = 365.0 * 86400.0;
+/// What `--backend` may be in this build.
+const SOLVERS: &str = if cfg!(feature = "osqp") {
+    "Solver: auto, multigrid, active-set, clarabel, osqp"
+} else {
+    "Solver: auto, multigrid, active-set, clarabel"
+};
 
 #[derive(Debug, Parser)]
 #[command(
@@ -28,13 +33,13 @@ A first run:
 Open solution.vtu in ParaView (or meshio, PyVista), membranes.png anywhere.
 Exit codes: 0 certified; 1 ran, but not certified; 2 bad input or usage."
 )]
-pub(super) struct Arguments {
+pub(crate) struct Arguments {
     #[command(subcommand)]
-    pub(super) command: Command,
+    pub(crate) command: Command,
 }
 
 #[derive(Debug, Subcommand)]
-pub(super) enum Command {
+pub(crate) enum Command {
     /// Solve a case and write solution.vtu, summary.json, membranes.png
     Solve(SolveArguments),
     /// Show every residual, from every backend or of an answer
@@ -49,142 +54,138 @@ pub(super) enum Command {
     Export(ExportArguments),
     /// List the built-in exact cases, or print one as a case file
     Cases(CasesArguments),
+    /// Print completions for a shell
+    Completions(CompletionsArguments),
+    /// Print the manual page, or write those of all commands
+    Man(ManArguments),
 }
 
 #[derive(Debug, Args)]
-pub(super) struct SolveArguments {
+#[command(after_help = "\
+The time limit covers reading, meshing, assembly, solving and pictures. What is
+certified by then is written: pictures that would take longer are left out.
+time_limit in the case file is that of the solver alone.")]
+pub(crate) struct SolveArguments {
     #[command(flatten)]
-    pub(super) case: CaseArguments,
-    /// Solver: auto, multigrid, active-set, clarabel, osqp
-    #[arg(long, value_name = "NAME")]
-    pub(super) backend: Option<BackendName>,
-    /// Folder for the results [default: out/CASE]
-    #[arg(long, value_name = "DIR")]
-    pub(super) out: Option<PathBuf>,
-    /// Most seconds the solver may take
+    pub(crate) case: CaseArguments,
+    #[arg(long, value_name = "NAME", help = SOLVERS)]
+    pub(crate) backend: Option<BackendName>,
+    #[command(flatten)]
+    pub(crate) output: OutputArguments,
+    /// Most seconds of this run; see below
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
-    pub(super) time_limit: Option<f64>,
+    pub(crate) time_limit: Option<TimeLimit>,
     /// Largest relative residual, or auto
     #[arg(long, value_name = "T", value_parser = tolerance_or_auto, allow_negative_numbers = true)]
-    pub(super) tolerance: Option<Tolerance>,
+    pub(crate) tolerance: Option<Tolerance>,
     /// Leave the backend's answer as it is
     #[arg(long)]
-    pub(super) no_polish: bool,
+    pub(crate) no_polish: bool,
     /// Also write dual.vtu, flux.vtu, mesh.png
     #[arg(long)]
-    pub(super) dual: bool,
-    #[command(flatten)]
-    pub(super) pictures: PictureArguments,
+    pub(crate) dual: bool,
 }
 
 #[derive(Debug, Args)]
-pub(super) struct CheckArguments {
+pub(crate) struct CheckArguments {
     #[command(flatten)]
-    pub(super) case: CaseArguments,
+    pub(crate) case: CaseArguments,
     /// Judge this answer (x, y) to the exported QP instead
     #[arg(long, value_name = "FILE")]
-    pub(super) answer: Option<PathBuf>,
+    pub(crate) answer: Option<PathBuf>,
     /// Folder for the summary.json of the answer
     #[arg(long, value_name = "DIR", requires = "answer")]
-    pub(super) out: Option<PathBuf>,
+    pub(crate) out: Option<PathBuf>,
+    /// Replace results of another case
+    #[arg(long, requires = "out")]
+    pub(crate) overwrite: bool,
     /// Largest relative residual, not the case file's
     #[arg(long, value_name = "T", value_parser = tolerance, allow_negative_numbers = true)]
-    pub(super) tolerance: Option<f64>,
+    pub(crate) tolerance: Option<f64>,
 }
 
 #[derive(Debug, Args)]
-pub(super) struct ConvergeArguments {
+pub(crate) struct ConvergeArguments {
     #[command(flatten)]
-    pub(super) case: CaseArguments,
+    pub(crate) case: CaseArguments,
     /// Meshes, each refined once more
-    #[arg(long, value_name = "N", default_value_t = 5)]
-    pub(super) levels: usize,
+    #[arg(long, value_name = "N", default_value = "5", value_parser = at_least(1), allow_negative_numbers = true)]
+    pub(crate) levels: usize,
     /// Most seconds of this run
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
-    pub(super) time_limit: Option<f64>,
-    /// Solver: auto, multigrid, active-set, clarabel, osqp
-    #[arg(long, value_name = "NAME")]
-    pub(super) backend: Option<BackendName>,
-    /// Folder, whose levels are kept [default: out/CASE]
-    #[arg(long, value_name = "DIR")]
-    pub(super) out: Option<PathBuf>,
+    pub(crate) time_limit: Option<TimeLimit>,
+    #[arg(long, value_name = "NAME", help = SOLVERS)]
+    pub(crate) backend: Option<BackendName>,
     #[command(flatten)]
-    pub(super) pictures: PictureArguments,
+    pub(crate) output: OutputArguments,
 }
 
 #[derive(Debug, Args)]
-pub(super) struct AdaptArguments {
+pub(crate) struct AdaptArguments {
     #[command(flatten)]
-    pub(super) case: CaseArguments,
+    pub(crate) case: CaseArguments,
     /// Guaranteed relative error to reach
     #[arg(long, value_name = "T", default_value = "0.01", value_parser = tolerance, allow_negative_numbers = true)]
-    pub(super) tolerance: f64,
+    pub(crate) tolerance: f64,
     /// Most vertices of a mesh
     #[arg(long, value_name = "N", default_value = "1000000", value_parser = at_least(3))]
-    pub(super) max_vertices: usize,
+    pub(crate) max_vertices: usize,
     /// Most seconds of this run
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
-    pub(super) time_limit: Option<f64>,
-    /// Solver: auto, multigrid, active-set, clarabel, osqp
-    #[arg(long, value_name = "NAME")]
-    pub(super) backend: Option<BackendName>,
-    /// Folder, whose levels are kept [default: out/CASE]
-    #[arg(long, value_name = "DIR")]
-    pub(super) out: Option<PathBuf>,
+    pub(crate) time_limit: Option<TimeLimit>,
+    #[arg(long, value_name = "NAME", help = SOLVERS)]
+    pub(crate) backend: Option<BackendName>,
     #[command(flatten)]
-    pub(super) pictures: PictureArguments,
+    pub(crate) output: OutputArguments,
 }
 
 #[derive(Debug, Args)]
-pub(super) struct BenchArguments {
+#[command(after_help = "Without a case file, results go into out/bench.")]
+pub(crate) struct BenchArguments {
     /// A case, refined level by level [default: a family on the square]
     #[arg(value_name = "CASE.toml", conflicts_with = "sizes")]
-    pub(super) case: Option<PathBuf>,
+    pub(crate) case: Option<PathBuf>,
     /// Meshes of N x N cells
     #[arg(long, value_name = "N,...", value_delimiter = ',', default_value = "64,128,256", value_parser = at_least(2))]
-    pub(super) sizes: Vec<usize>,
+    pub(crate) sizes: Vec<usize>,
     /// Meshes of the case, each one finer
     #[arg(long, value_name = "N", default_value = "4", value_parser = at_least(1), requires = "case")]
-    pub(super) levels: usize,
+    pub(crate) levels: usize,
     /// Solvers [default: all of this build]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
-    pub(super) solvers: Vec<BackendName>,
+    pub(crate) solvers: Vec<BackendName>,
     /// Seconds a solve may take
     #[arg(long, value_name = "S", default_value = "60", value_parser = seconds, allow_negative_numbers = true)]
-    pub(super) time_limit: f64,
+    pub(crate) time_limit: TimeLimit,
     /// Largest relative residual, not the case file's
     #[arg(long, value_name = "T", value_parser = tolerance, allow_negative_numbers = true)]
-    pub(super) tolerance: Option<f64>,
+    pub(crate) tolerance: Option<f64>,
     /// Also show rows of such a bench.csv; repeatable
     #[arg(long, value_name = "FILE.csv")]
-    pub(super) merge: Vec<PathBuf>,
+    pub(crate) merge: Vec<PathBuf>,
     /// Measure nothing, show the rows of --merge
     #[arg(long, requires = "merge")]
-    pub(super) no_run: bool,
-    /// Folder for results [default: out/CASE, out/bench]
-    #[arg(long, value_name = "DIR")]
-    pub(super) out: Option<PathBuf>,
+    pub(crate) no_run: bool,
     #[command(flatten)]
-    pub(super) pictures: PictureArguments,
+    pub(crate) output: OutputArguments,
     /// No output on the terminal but errors
     #[arg(long, short)]
-    pub(super) quiet: bool,
+    pub(crate) quiet: bool,
 }
 
 #[derive(Debug, Args)]
-pub(super) struct ExportArguments {
+pub(crate) struct ExportArguments {
     #[command(flatten)]
-    pub(super) case: CaseArguments,
+    pub(crate) case: CaseArguments,
     /// File format
     #[arg(long, value_enum)]
-    pub(super) format: Format,
-    /// Folder for the files [default: out/CASE]
-    #[arg(long, value_name = "DIR")]
-    pub(super) out: Option<PathBuf>,
+    pub(crate) format: Format,
+    #[command(flatten)]
+    pub(crate) output: OutputArguments,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum Format {
+pub(crate) enum Format {
     /// problem.qps, for Gurobi, CPLEX (for HiGHS, rename it to .mps)
     Qps,
     /// problem.npz, for numpy and scipy
@@ -194,39 +195,62 @@ pub(super) enum Format {
 }
 
 #[derive(Debug, Args)]
-pub(super) struct CasesArguments {
+pub(crate) struct CasesArguments {
     /// Print this case as a complete case file
     #[arg(value_name = "NAME")]
-    pub(super) name: Option<String>,
+    pub(crate) name: Option<String>,
 }
 
 #[derive(Debug, Args)]
-pub(super) struct CaseArguments {
-    /// The case file (TOML)
-    #[arg(value_name = "CASE.toml")]
-    pub(super) path: PathBuf,
-    /// Further uniform refinements of the mesh
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = refinements, allow_negative_numbers = true)]
-    pub(super) refine: u32,
-    /// Most GiB of memory [default: all that is free]
-    #[arg(long, value_name = "GIB", value_parser = positive, allow_negative_numbers = true)]
-    pub(super) memory_limit: Option<f64>,
-    /// No output on the terminal but errors
-    #[arg(long, short)]
-    pub(super) quiet: bool,
+pub(crate) struct OutputArguments {
+    /// Folder for the results [default: out/CASE]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Replace results of another case or settings
+    #[arg(long)]
+    pub(crate) overwrite: bool,
 }
 
-impl CaseArguments {
-    /// The folder for results: the one named, else `out/` and the name of the case file without its ending.
-    pub(super) fn output_folder(&self, named: Option<&PathBuf>) -> PathBuf {
-        output_folder(&self.path, named)
+impl OutputArguments {
+    /// The folder: the one named, else `out/` and the name of `case` without its ending.
+    pub(crate) fn folder(&self, case: &Path) -> PathBuf {
+        let stem = case.file_stem().unwrap_or(case.as_os_str());
+        self.out.clone().unwrap_or_else(|| PathBuf::from(OUTPUT).join(stem))
     }
 }
 
-/// The folder for results: the one named, else `out/` and the name of `case` without its ending.
-pub(super) fn output_folder(case: &Path, named: Option<&PathBuf>) -> PathBuf {
-    let stem = case.file_stem().unwrap_or(case.as_os_str());
-    named.cloned().unwrap_or_else(|| PathBuf::from(OUTPUT).join(stem))
+#[derive(Debug, Args)]
+#[command(after_help = "\
+For bash, in ~/.bashrc:  source <(membranes completions bash)
+For zsh, in a folder of $fpath:  membranes completions zsh > _membranes
+For fish, in its configuration:  membranes completions fish | source")]
+pub(crate) struct CompletionsArguments {
+    /// The shell
+    #[arg(value_enum)]
+    pub(crate) shell: Shell,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ManArguments {
+    /// Write membranes.1, membranes-solve.1, ... into this folder
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CaseArguments {
+    /// The case file (TOML)
+    #[arg(value_name = "CASE.toml")]
+    pub(crate) path: PathBuf,
+    /// Further uniform refinements of the mesh
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = refinements, allow_negative_numbers = true)]
+    pub(crate) refine: u32,
+    /// Most GiB of memory [default: all that is free]
+    #[arg(long, value_name = "GIB", value_parser = positive, allow_negative_numbers = true)]
+    pub(crate) memory_limit: Option<f64>,
+    /// No output on the terminal but errors
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
 }
 
 fn tolerance_or_auto(text: &str) -> Result<Tolerance, String> {
@@ -252,9 +276,9 @@ fn at_least(least: usize) -> impl Fn(&str) -> Result<usize, String> + Clone + Se
     }
 }
 
-fn seconds(text: &str) -> Result<f64, String> {
-    let value = text.parse().ok().filter(|&value: &f64| value > 0.0 && value <= LONGEST);
-    value.ok_or_else(|| format!("choose seconds above 0, at most {LONGEST:.0}"))
+fn seconds(text: &str) -> Result<TimeLimit, String> {
+    let seconds: f64 = text.parse().map_err(|_| "choose seconds above 0, such as 60")?;
+    TimeLimit::from_seconds(seconds).map_err(|error| error.to_string())
 }
 
 fn positive(text: &str) -> Result<f64, String> {
@@ -263,7 +287,8 @@ fn positive(text: &str) -> Result<f64, String> {
 }
 
 /// What clap has to say, without its paragraphs on usage and on arguments that begin with a hyphen.
-pub(super) fn one_line(error: &clap::Error) -> String {
+/// `command` is the first argument, which may be a command: then its help says more.
+pub(crate) fn one_line(error: &clap::Error, command: Option<&str>) -> String {
     let text = error.to_string();
     let of_use = |paragraph: &&str| {
         let asides = ["Usage:", "For more information", "tip: to pass"];
@@ -272,5 +297,7 @@ pub(super) fn one_line(error: &clap::Error) -> String {
     let words = |paragraph: &str| paragraph.split_whitespace().collect::<Vec<_>>().join(" ");
     let message = text.split("\n\n").filter(of_use).map(words).collect::<Vec<_>>().join("; ");
     let message = message.strip_prefix("error: ").unwrap_or(&message);
-    format!("{message}; see `membranes --help`")
+    let known = |name: &&str| Arguments::command().find_subcommand(name).is_some();
+    let command = command.filter(known).map_or_else(String::new, |name| format!("{name} "));
+    format!("{message}; see `membranes {command}--help`")
 }

@@ -2,10 +2,10 @@
 
 use std::io::{self, Write};
 
-use super::Failure;
+use super::failure::Failure;
 
 /// Prints to standard output. A reader that has gone away (`| head`) is no error.
-pub(super) fn print(text: &str) -> Result<(), Failure> {
+pub(crate) fn print(text: &str) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::Input(format!(
@@ -16,20 +16,20 @@ pub(super) fn print(text: &str) -> Result<(), Failure> {
 }
 
 /// Lines of a name and a value, aligned.
-pub(super) fn fields(rows: &[(&str, String)]) -> String {
+pub(crate) fn fields(rows: &[(&str, String)]) -> String {
     let width = rows.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
     rows.iter().map(|(name, value)| format!("  {name:width$}  {value}\n")).collect()
 }
 
 /// A number with so many decimals (at least four), or in powers of ten where they would be none or many.
-pub(super) fn fixed(value: f64, decimals: usize) -> String {
+pub(crate) fn fixed(value: f64, decimals: usize) -> String {
     let moderate = value == 0.0 || (1e-4..1e9).contains(&value.abs());
     // Exponents take up to four places.
     if moderate { format!("{value:.decimals$}") } else { format!("{value:.0$e}", decimals - 4) }
 }
 
 /// A number of bytes or things, in groups of three digits.
-pub(super) fn grouped(n: usize) -> String {
+pub(crate) fn grouped(n: usize) -> String {
     let digits = n.to_string();
     let mut text = String::new();
     for (k, digit) in digits.chars().enumerate() {

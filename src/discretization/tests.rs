@@ -199,8 +199,8 @@ proptest! {
 fn heights_below_zero_and_loads_without_a_value_are_refused() {
     let mesh = square(4);
     let new = |problem: &ContactProblem| Discretization::new(problem, mesh.clone()).map(|_| ());
-    let mended = problem(1.0, 1.0, 0.5);
-    assert_eq!(new(&mended), Ok(()));
+    let fixed = problem(1.0, 1.0, 0.5);
+    assert_eq!(new(&fixed), Ok(()));
 
     // Below zero inside, the height is not looked at.
     let basin = |depth: f64| {
@@ -251,4 +251,44 @@ fn sizes_out_of_range_are_refused() {
     let problem = ContactProblem::builder().load(alternating, 0.0).build().unwrap();
     let error = Discretization::new(&problem, large.clone()).map(|_| ()).unwrap_err();
     assert!(matches!(error, DiscretizationError::OutOfRange { value: f64::INFINITY, .. }), "{error}");
+}
+
+/// What the quadrature has not met cannot be put right by other units.
+#[test]
+fn a_load_that_the_quadrature_misses_is_named() {
+    let message = |f2: &str| {
+        let load: crate::problem::Expression = f2.parse().unwrap();
+        let problem = ContactProblem::builder().load(0.0, load).build().unwrap();
+        Discretization::new(&problem, square(32)).map(|_| ()).map_err(|error| error.to_string())
+    };
+    // Of this spike nothing but its foot of 1e-50 lies at the points.
+    let spike = "1000000*exp(-((x-0.53)^2+(y-0.52)^2)/0.0000001)";
+    let error = message(spike).unwrap_err();
+    assert!(error.starts_with("the quadrature sees nothing of load f2: at its points"), "{error}");
+    assert!(!error.contains("0.00e0"), "{error}");
+    assert_eq!(message(&format!("1e-3 + {spike}")), Ok(()));
+    // A constant that is as small is in units that are too large.
+    let problem = ContactProblem::builder().load(0.0, 1e-300).build().unwrap();
+    let error = Discretization::new(&problem, square(2)).map(|_| ()).unwrap_err();
+    assert!(matches!(error, DiscretizationError::OutOfRange { .. }));
+}
+
+#[test]
+fn a_height_that_fails_says_why() {
+    let g = Function::try_from_fn(|_, _, _| Err("no connection"));
+    let error = Discretization::new(&problem(1.0, 1.0, g), square(2)).map(|_| ()).unwrap_err();
+    assert_eq!(error.to_string(), "height g cannot be evaluated: no connection");
+}
+
+/// A stiffer membrane moves less by what is not known of its load.
+#[test]
+fn the_quadrature_difference_is_one_of_the_energy_norm() {
+    let difference = |mu2: f64| {
+        let wave = Function::from_fn(|x, y| (40.0 * x).sin() * (50.0 * y).cos());
+        let problem = ContactProblem::builder().tension(1.0, mu2).load(-1.0, wave).build().unwrap();
+        Discretization::new(&problem, square(8)).unwrap().quadrature_difference()
+    };
+    let [first, second] = difference(1.0);
+    assert!(first == 0.0 && second > 0.0);
+    assert_eq!(difference(4.0), [0.0, 0.5 * second]);
 }

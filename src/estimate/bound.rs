@@ -19,24 +19,25 @@
 
 mod cells;
 mod trace;
-
-use std::f64::consts::PI;
+mod warning;
 
 use cells::{Cells, Sums};
-use serde::Serialize;
 use trace::Trace;
+pub use warning::LoadWarning;
 
 use super::MeasureError;
-use crate::action::Action;
+use crate::action::{Action, ContactSolution, extend_to_boundary};
 use crate::discretization::Discretization;
 use crate::flux::WedgeFluxes;
-use crate::mesh::{VertexKind, VertexTriangles};
+use crate::geometry::friedrichs;
+use crate::mesh::VertexTriangles;
 use crate::problem::{ContactProblem, Domain};
 
 /// A guaranteed bound of the energy error `|||u - u_h||| = (sum_i mu_i |u_i - u_ih|_{H1}^2)^(1/2)`.
 ///
 /// Guaranteed up to the quadrature of loads and height: loads that are polynomials of degree 3 are integrated exactly, and of
-/// others the residual is known as well as the quadrature knows them.
+/// others the residual is known as well as the quadrature knows them. How well that is, a second rule says at other points
+/// ([`ErrorBound::warnings`]); what both do not meet, nobody sees.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ErrorBound {
     /// The bound. Unit: square root of an energy.
@@ -46,16 +47,23 @@ pub struct ErrorBound {
     /// Where it comes from.
     pub parts: BoundParts,
     /// The action `lt` of the bound, on the dual cells: `lambda_h` where the membranes touch, and on the cells of the boundary, where
-    /// `lambda_h` is zero, that of the neighbours if they touch all around. Shape: `vertices`; unit: force per area.
+    /// `lambda_h` is zero, that of the neighbours if they touch all around: `total_force_extended` is its integral. Shape:
+    /// `vertices`; unit: force per area.
     pub action: Vec<f64>,
     /// The squared indicators `sum_i (a_{K,i} + b_{K,i})^2 + 2 a_{K,i} b_{K,i} + 2 (lt, w^)_K`: with `alpha_i = 0`, their sum is the
     /// square of the bound. Shape: `triangles`.
     pub indicators: Vec<f64>,
+    /// By how much the bound would grow at most, about, by what a second quadrature rule finds of each load; see
+    /// [`Discretization::quadrature_difference`]. Unit: square root of an energy.
+    pub quadrature_difference: [f64; 2],
+    /// The loads of which the quadrature may know too little for the bound to hold.
+    pub warnings: Vec<LoadWarning>,
 }
 
 /// What a bound consists of, each part as a norm of its own; the bound is at most the sum of the parts, with `boundary` and
 /// `algebraic` counted twice.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "files", derive(serde::Serialize))]
 pub struct BoundParts {
     /// The distance of the reconstructed fluxes from `-mu_i grad u_ih`: the discretisation error.
     pub flux: f64,
@@ -85,7 +93,8 @@ impl ErrorBound {
     /// counts as the domain.
     ///
     /// # Errors
-    /// [`MeasureError::OtherMesh`] when the displacements are not over the vertices.
+    /// [`MeasureError::OtherMesh`] when the displacements are not over the vertices, [`MeasureError::Height`] and
+    /// [`MeasureError::Load`] when the data have no value at a point of the boundary.
     pub fn new(
         problem: &ContactProblem,
         domain: Option<&Domain>,
@@ -93,19 +102,51 @@ impl ErrorBound {
         displacement: &[Vec<f64>; 2],
     ) -> Result<Self, MeasureError> {
         MeasureError::check(d, displacement)?;
+        let seen = Action::recover(d, displacement);
+        let action = likely_action(d, displacement, &seen);
+        Self::with_action(problem, domain, d, displacement, &seen, action)
+    }
+
+    /// Bounds the error of a certified solution, with its own action: what was cut off of the action that the displacements
+    /// have by (4.5) is in the algebraic part.
+    ///
+    /// # Errors
+    /// [`MeasureError::OtherMesh`] when it is the solution on another mesh.
+    pub fn of_solution(
+        problem: &ContactProblem,
+        domain: Option<&Domain>,
+        d: &Discretization,
+        solution: &ContactSolution,
+    ) -> Result<Self, MeasureError> {
+        MeasureError::check(d, solution.displacement())?;
+        let seen = Action::recover(d, solution.displacement());
+        let action = solution.lambda().to_vec();
+        Self::with_action(problem, domain, d, solution.displacement(), &seen, action)
+    }
+
+    /// With any `action >= 0` over vertices, zero on the boundary, where it is still to be continued to.
+    fn with_action(
+        problem: &ContactProblem,
+        domain: Option<&Domain>,
+        d: &Discretization,
+        displacement: &[Vec<f64>; 2],
+        seen: &[Action],
+        mut action: Vec<f64>,
+    ) -> Result<Self, MeasureError> {
+        let rest_sq = rest_sq(d, seen, &action);
+        extend_to_boundary(d, displacement, &mut action);
         let around = VertexTriangles::new(d.mesh().points().len(), d.mesh().triangles());
-        let push = Push::new(d, displacement, &around);
         let cells = Cells {
             d,
             displacement,
-            lambda: &push.lambda,
-            fluxes: WedgeFluxes::new(d, &around, displacement, &push.lambda),
+            lambda: &action,
+            fluxes: WedgeFluxes::new(d, &around, displacement, &action),
             trace: Trace::new(problem, domain, d, &around),
         };
-        let (sums, indicators) = cells.sum();
+        let (sums, indicators) = cells.sum()?;
+        let friedrichs = friedrichs(cells.sides());
         drop(cells);
-        let Push { lambda, rest_sq } = push;
-        Ok(Self::from_sums(d, &sums, friedrichs(d, domain), rest_sq, lambda, indicators))
+        Ok(Self::from_sums(d, &sums, friedrichs, rest_sq, action, indicators))
     }
 
     fn from_sums(
@@ -122,15 +163,18 @@ impl ErrorBound {
             (sums.indicators_sq[i].sqrt() + rest[i]).powi(2) + changes
         };
         let others = sums.products + sums.contact + sums.overlap;
+        let total = (of_membrane(0) + of_membrane(1) + 2.0 * others).sqrt();
         Self {
-            total: (of_membrane(0) + of_membrane(1) + 2.0 * others).sqrt(),
+            total,
+            quadrature_difference: d.quadrature_difference(),
+            warnings: LoadWarning::all(d, total),
             energy_norm: sums.energy_sq.sqrt(),
             parts: BoundParts {
                 flux: sums.flux_sq.sqrt(),
                 oscillation: sums.oscillation_sq.sqrt(),
                 contact: (2.0 * sums.contact).sqrt(),
                 boundary: sums.boundary_sq.sqrt(),
-                algebraic: rest[0].hypot(rest[1]) + (2.0 * sums.overlap).sqrt() + sums.mended_sq.sqrt(),
+                algebraic: rest[0].hypot(rest[1]) + (2.0 * sums.overlap).sqrt() + sums.feasible_sq.sqrt(),
             },
             action,
             indicators,
@@ -149,67 +193,26 @@ impl ErrorBound {
     }
 }
 
-/// The action of the bound, and what it leaves of the actions that the two membranes see.
-struct Push {
-    /// `lt`: the recovered action where the membranes touch, cut off at zero; over vertices.
-    lambda: Vec<f64>,
-    /// `||rho_i||^2`, where `rho_i` is on `D_a` the action that membrane `i` sees, less `lt`.
-    rest_sq: [f64; 2],
-}
-
-impl Push {
-    fn new(d: &Discretization, displacement: &[Vec<f64>; 2], around: &VertexTriangles) -> Self {
-        let action = Action::recover(d, displacement);
-        let gap = |a: usize| displacement[0][a] - displacement[1][a];
-        let scales = d.scales();
-        let mut lambda = vec![0.0; d.mesh().points().len()];
-        let mut rest_sq = [0.0; 2];
-        for (k, &a) in d.interior().iter().enumerate() {
-            // Where there is a gap, an action would cost its product with the gap; rounding of a large gap is none.
-            let Action { lambda: recovered, lambda_rounding, from_membrane, .. } = action[k];
-            let is_action = recovered > lambda_rounding;
-            if is_action && gap(a) / scales.displacement < recovered / scales.force_density {
-                lambda[a] = recovered.max(0.0);
-            }
-            (0..2).for_each(|i| {
-                rest_sq[i] += d.dual_area()[a] * (from_membrane[i] - lambda[a]).powi(2);
-            });
-        }
-        push_at_boundary(d, gap, around, &mut lambda);
-        Self { lambda, rest_sq }
-    }
-}
-
-/// On the dual cells of the boundary `lambda_h` is zero (4.4), the exact action need not be. Where the membranes touch in
-/// all triangles around a boundary vertex, `lt` is there the mean of the action at the neighbours.
-fn push_at_boundary(
-    d: &Discretization,
-    gap: impl Fn(usize) -> f64,
-    around: &VertexTriangles,
-    lambda: &mut [f64],
-) {
-    let kind = d.mesh().kind();
-    for a in (0..lambda.len()).filter(|&a| kind[a] == VertexKind::Boundary) {
-        let corners = || around.of(a).iter().flat_map(|&t| d.mesh().triangles()[t]);
-        if corners().any(|b| gap(b) > 0.0) {
-            continue;
-        }
-        let inside = || corners().filter(|&b| kind[b] == VertexKind::Interior);
-        let count = inside().count();
-        if count > 0 {
-            lambda[a] = inside().map(|b| lambda[b]).sum::<f64>() / count as f64;
-        }
-    }
-}
-
-/// `C_F` with `||v|| <= C_F |v|_{H1}` for functions that vanish on the boundary.
-fn friedrichs(d: &Discretization, domain: Option<&Domain>) -> f64 {
-    let (lower, upper) = d.mesh().bounding_box();
-    let sides = match domain {
-        Some(Domain::Disk { radius, .. }) => [2.0 * radius; 2],
-        _ => [upper[0] - lower[0], upper[1] - lower[1]],
+/// The recovered action where the membranes seem to touch, cut off at zero: over vertices.
+fn likely_action(d: &Discretization, [u1, u2]: &[Vec<f64>; 2], seen: &[Action]) -> Vec<f64> {
+    let scales = d.scales();
+    let at = |(&a, action): (&usize, &Action)| {
+        // Where there is a gap, an action would cost its product with the gap; rounding of a large gap is none.
+        let is_action = action.lambda > action.lambda_rounding;
+        let touches = (u1[a] - u2[a]) / scales.displacement < action.lambda / scales.force_density;
+        if is_action && touches { action.lambda } else { 0.0 }
     };
-    1.0 / (PI * (1.0 / sides[0]).hypot(1.0 / sides[1]))
+    let actions: Vec<f64> = d.interior().iter().zip(seen).map(at).collect();
+    d.extend(&actions, |_| 0.0)
+}
+
+/// `||rho_i||^2`, where `rho_i` is on `D_a` the action that membrane `i` sees, less that of the bound.
+fn rest_sq(d: &Discretization, seen: &[Action], action: &[f64]) -> [f64; 2] {
+    let mut rest_sq = [0.0; 2];
+    for (&a, Action { from_membrane, .. }) in d.interior().iter().zip(seen) {
+        (0..2).for_each(|i| rest_sq[i] += d.dual_area()[a] * (from_membrane[i] - action[a]).powi(2));
+    }
+    rest_sq
 }
 
 #[cfg(test)]

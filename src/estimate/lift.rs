@@ -1,9 +1,9 @@
 //! The norm of `H^-1` by a Riesz lift.
 
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 use super::MeasureError;
-use super::multigrid::Multigrid;
+use super::spaces::Spaces;
 use crate::discretization::Discretization;
 use crate::fem::CutRule;
 use crate::geometry::twice_signed_area;
@@ -48,14 +48,14 @@ pub(super) fn dual_norm(
     refinements: usize,
     rho: impl Fn(usize, [f64; 2]) -> f64 + Sync,
 ) -> Result<DualNorm, MeasureError> {
-    let (spaces, mesh) = Multigrid::new(d, sub, refinements)?;
+    let (spaces, mesh) = Spaces::new(d, sub, refinements)?;
     let parts = mesh.triangles().len() / sub.mesh().triangles().len();
     let [deep, change] = functionals(&mesh, rule, |t, point| rho(t / parts, point));
-    let finest = spaces.finest();
+    let [deep, change] = [deep, change].map(|functional| spaces.functional(&functional));
     Ok(DualNorm {
-        value: spaces.dual_norm(finest, &deep)?,
-        coarser: spaces.dual_norm(finest - 1, &spaces.restrict(finest, &deep))?,
-        quadrature: spaces.dual_norm(finest - 1, &spaces.restrict(finest, &change))?,
+        value: spaces.dual_norm(&deep)?,
+        coarser: spaces.dual_norm(&spaces.restrict(&deep))?,
+        quadrature: spaces.dual_norm(&spaces.restrict(&change))?,
     })
 }
 

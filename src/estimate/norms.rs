@@ -1,6 +1,6 @@
 //! The norms of the error of a solution.
 
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 use super::MeasureError;
 use super::lift::{DualNorm, dual_norm};
@@ -95,6 +95,7 @@ impl ErrorNorms {
             exact.lambda(x, y) - fields.lambda[sub.vertex_of(t)]
         })?;
         let nodal_max = nodal_max(d.mesh(), fields.displacement, exact);
+        sums.check_finite(exact)?;
         Ok(Self {
             h1: sums.h1_sq.map(f64::sqrt),
             l2: sums.l2_sq.map(f64::sqrt),
@@ -123,6 +124,7 @@ pub fn energy_error(
     let sub = SubTriangulation::new(d.mesh())?;
     let fields = Fields { displacement, lambda: &vec![0.0; d.mesh().points().len()] };
     let [sums, _] = integrate(d.mesh(), &sub, fields, &cut_rule(exact, DEPTH), exact);
+    sums.check_finite(exact)?;
     Ok(sums.energy(exact.tension()))
 }
 
@@ -164,6 +166,12 @@ impl Sums {
 
     fn energy(&self, [mu1, mu2]: [f64; 2]) -> f64 {
         (mu1 * self.h1_sq[0] + mu2 * self.h1_sq[1]).sqrt()
+    }
+
+    /// Maxima lose a NaN, sums do not.
+    fn check_finite(&self, exact: &ExactSolution) -> Result<(), MeasureError> {
+        let sum = self.energy(exact.tension()) + self.l2_sq[0] + self.l2_sq[1] + self.lambda_sq;
+        if sum.is_finite() { Ok(()) } else { Err(MeasureError::NotFinite) }
     }
 
     fn largest_change(&self, other: &Self) -> f64 {

@@ -77,7 +77,7 @@ fn the_strip_has_the_errors_that_are_known_in_closed_form() {
         assert!(close(norms.contact.touching, 0.5) && close(norms.contact.pushing, 0.5), "{norms:?}");
         assert!(close(norms.contact.error(), 0.5 - (n - 1.0) * (n / 2.0) * h * h), "{norms:?}");
         assert!(norms.quadrature < ROUNDING && norms.lambda_dual.quadrature < ROUNDING, "nothing is cut");
-        // The twin: another curvature has other errors.
+        // The negative test: another curvature has other errors.
         assert!(!close(norms.h1[0], h1 / curvature));
     }
 }
@@ -120,7 +120,7 @@ fn the_cases_converge_at_their_rates() {
         assert!(agrees(&found), "{case}: {found:?}");
         assert!(fine.energy < largest && fine.energy > 0.9 * largest, "{case}: {}", fine.energy);
         assert!(fine.quadrature < 1e-5 && fine.lambda_dual.estimate() <= 0.12 * fine.lambda_dual.value);
-        // The twin: of two halvings, one taken for two.
+        // The negative test: of two halvings, one taken for two.
         assert!(!agrees(&rates_between(figures(&coarse), figures(&middle))), "{case}");
     }
 }

@@ -1,13 +1,16 @@
 //! A load triangle by triangle: what load vectors and error bounds need of it.
 
-use rayon::prelude::*;
+use std::ops::Range;
+
+use crate::parallel::prelude::*;
 
 use super::CutRule;
-use super::load::NotFinite;
+use super::dual_norm::dual_norm;
 use super::quadrature::DEGREE_4;
-use crate::geometry::twice_signed_area;
-use crate::mesh::{Mesh, VertexTriangles};
-use crate::problem::Function;
+use super::second_rule::SecondRule;
+use crate::geometry::{poincare, twice_signed_area};
+use crate::mesh::{Mesh, VertexTriangles, corner_of};
+use crate::problem::{EvaluationError, Function};
 
 /// Triangles whose quadrature points are evaluated together.
 pub(super) const BLOCK: usize = 512;
@@ -21,8 +24,13 @@ const JUMP_DEPTH: usize = 4;
 pub(crate) enum LoadMoments {
     /// The same value everywhere: nothing needs to be kept.
     Constant(f64),
-    /// Over triangles.
-    Varying(Vec<ElementMoments>),
+    /// One that is known at the points of the quadrature.
+    Varying {
+        /// Over triangles.
+        moments: Vec<ElementMoments>,
+        /// What a second rule finds beyond them, see [`LoadMoments::quadrature_difference`].
+        difference: f64,
+    },
 }
 
 impl LoadMoments {
@@ -30,15 +38,52 @@ impl LoadMoments {
     ///
     /// # Errors
     /// As [`load`](super::load()).
-    pub(crate) fn new(mesh: &Mesh, f: &Function) -> Result<Self, NotFinite> {
-        match *f {
-            Function::Constant(value) if value.is_finite() => Ok(Self::Constant(value)),
-            _ => {
-                let blocks = 0..mesh.triangles().len().div_ceil(BLOCK);
-                // Collected before errors are looked for, so that the first in the order of the triangles is named.
-                let blocks: Vec<_> = blocks.into_par_iter().map(|block| on_block(mesh, block, f)).collect();
-                Ok(Self::Varying(blocks.into_iter().collect::<Result<Vec<_>, _>>()?.concat()))
-            }
+    pub(crate) fn new(mesh: &Mesh, f: &Function) -> Result<Self, EvaluationError> {
+        if let Function::Constant(value) = *f
+            && value.is_finite()
+        {
+            return Ok(Self::Constant(value));
+        }
+        let triangles = mesh.triangles().len();
+        let blocks = || (0..triangles.div_ceil(BLOCK)).into_par_iter();
+        let area_of = |block: usize| triangles_of(mesh, block).map(|t| mesh.triangle_area(t)).sum();
+        let areas: Vec<f64> = blocks().map(area_of).collect();
+        let second_rule = SecondRule::new(areas.iter().sum());
+        // Collected before errors are looked for, so that the first in the order of the triangles is named.
+        let blocks: Vec<_> = blocks().map(|block| on_block(mesh, block, f, &second_rule)).collect();
+        let (mut moments, mut means) = (Vec::with_capacity(triangles), Vec::with_capacity(triangles));
+        let mut excess_sq = 0.0;
+        for block in blocks {
+            let block = block?;
+            moments.extend(block.moments);
+            means.extend(block.means);
+            excess_sq += block.excess_sq;
+        }
+        Ok(Self::Varying { moments, difference: excess_sq.sqrt() + dual_norm(mesh, &means) })
+    }
+
+    /// What a second quadrature rule, at other points, finds of the load `f` beyond the affine functions `p` that stand for it, in the
+    /// norm in which a load enters the bound of the error, but for the tension:
+    ///
+    /// ```text
+    /// ( sum_K (h_K / pi)^2 max(0, ||f - p - m_K||_K^2 - ||f - p||_K^2) )^(1/2) + || m ||_{H^-1}
+    /// ```
+    ///
+    /// The means `m_K` of `f - p` are zero by the first rule; so is the rest, where both rules find the same. Unit: force.
+    pub(crate) fn quadrature_difference(&self) -> f64 {
+        match self {
+            Self::Constant(_) => 0.0,
+            Self::Varying { difference, .. } => *difference,
+        }
+    }
+
+    /// Whether the load varies, but is zero at all points of the quadrature.
+    pub(crate) fn sees_nothing(&self) -> bool {
+        match self {
+            Self::Constant(_) => false,
+            Self::Varying { moments, .. } => moments
+                .iter()
+                .all(|on_triangle| on_triangle.integrals == [0.0; 3] && on_triangle.deviation == 0.0),
         }
     }
 
@@ -48,16 +93,13 @@ impl LoadMoments {
             Self::Constant(value) => {
                 ElementMoments { integrals: [value * mesh.triangle_area(t) / 3.0; 3], deviation: 0.0 }
             }
-            Self::Varying(moments) => moments[t],
+            Self::Varying { moments, .. } => moments[t],
         }
     }
 
     /// The load vector: the sums of the integrals around the vertices.
     pub(crate) fn vector(&self, mesh: &Mesh, around: &VertexTriangles) -> Vec<f64> {
-        let on_element = |t: usize, a: usize| {
-            let corner = mesh.triangles()[t].iter().position(|&b| b == a);
-            self.on(mesh, t).integrals[corner.expect("a is a corner of the triangles around it")]
-        };
+        let on_element = |t: usize, a: usize| self.on(mesh, t).integrals[corner_of(mesh.triangles()[t], a)];
         let at = |a: usize| around.of(a).iter().map(|&t| on_element(t, a)).sum();
         (0..mesh.points().len()).into_par_iter().map(at).collect()
     }
@@ -75,19 +117,53 @@ pub(crate) struct ElementMoments {
 impl ElementMoments {
     fn new(area: f64, samples: &Samples) -> Self {
         let integrals = samples.integrals(area);
-        let mean = integrals.iter().sum::<f64>() / area;
-        // `int_K p phi_i = |K| / 12 (3 mean + p_i)`.
-        let [p, q, r] = integrals.map(|integral| 12.0 * integral / area - 3.0 * mean);
-        let Samples { values, weights, points } = samples;
-        let mut square = 0.0;
-        for ((value, weight), [a, b, c]) in values.iter().zip(*weights).zip(*points) {
-            square += weight * (value - (a * p + b * q + c * r)).powi(2);
+        let own = Self { integrals, deviation: 0.0 };
+        Self { deviation: (area * own.rest(area, samples).square).sqrt(), ..own }
+    }
+
+    /// The values of `p` at the corners: `int_K p phi_i = |K| / 12 (3 mean + p_i)`.
+    fn affine(&self, area: f64) -> [f64; 3] {
+        let mean = self.integrals.iter().sum::<f64>() / area;
+        self.integrals.map(|integral| 12.0 * integral / area - 3.0 * mean)
+    }
+
+    /// The means of `f - p` and of its square.
+    fn rest(&self, area: f64, samples: &Samples) -> Rest {
+        let [p, q, r] = self.affine(area);
+        let (mut mean, mut square) = (0.0, 0.0);
+        for ((value, weight), [a, b, c]) in samples.values.iter().zip(samples.weights).zip(samples.points) {
+            let rest = value - (a * p + b * q + c * r);
+            mean += weight * rest;
+            square += weight * rest * rest;
         }
-        Self { integrals, deviation: (area * square).sqrt() }
+        Rest { mean, square }
+    }
+
+    /// What the samples of another rule find beyond these moments.
+    fn beyond(&self, area: f64, samples: &Samples) -> Beyond {
+        let Rest { mean, square } = self.rest(area, samples);
+        let excess_sq = area * (square - mean * mean) - self.deviation * self.deviation;
+        Beyond { mean, excess_sq: excess_sq.max(0.0) }
     }
 }
 
+/// Means over a triangle.
+struct Rest {
+    mean: f64,
+    square: f64,
+}
+
+/// What a second rule finds of `f - p` on a triangle.
+#[derive(Debug, Clone, Copy)]
+struct Beyond {
+    /// Its mean.
+    mean: f64,
+    /// The square of its norm without the mean, as far as that is more than what the first rule finds.
+    excess_sq: f64,
+}
+
 /// A function at the points of a rule on a triangle.
+#[derive(Clone, Copy)]
 struct Samples<'a> {
     values: &'a [f64],
     /// Their sum is one.
@@ -96,7 +172,14 @@ struct Samples<'a> {
     points: &'a [[f64; 3]],
 }
 
-impl Samples<'_> {
+impl<'a> Samples<'a> {
+    /// Takes the values at the points of a rule off the front of `values`.
+    fn next(values: &mut &'a [f64], weights: &'a [f64], points: &'a [[f64; 3]]) -> Self {
+        let (own, rest) = values.split_at(points.len());
+        *values = rest;
+        Self { values: own, weights, points }
+    }
+
     /// `int_T f phi_i` for the three corners.
     fn integrals(&self, area: f64) -> [f64; 3] {
         let mut integrals = [0.0; 3];
@@ -107,60 +190,119 @@ impl Samples<'_> {
     }
 }
 
+/// What is found on a block of triangles.
+#[derive(Default)]
+struct Block {
+    moments: Vec<ElementMoments>,
+    /// What the second rule finds: the means of `f - p`, and the sum of `(h_K / pi)^2` times the rest.
+    means: Vec<f64>,
+    excess_sq: f64,
+}
+
 /// The moments on one block of triangles.
-fn on_block(mesh: &Mesh, block: usize, f: &Function) -> Result<Vec<ElementMoments>, NotFinite> {
-    let rule = DEGREE_4;
-    let triangles = block * BLOCK..((block + 1) * BLOCK).min(mesh.triangles().len());
-    let points = rule.points.len();
-    let (mut x, mut y) = (Vec::with_capacity(points * BLOCK), Vec::with_capacity(points * BLOCK));
+fn on_block(
+    mesh: &Mesh,
+    block: usize,
+    f: &Function,
+    second_rule: &SecondRule,
+) -> Result<Block, EvaluationError> {
+    let triangles = triangles_of(mesh, block);
+    let (mut first, mut second) = (Values::default(), Values::default());
     for t in triangles.clone() {
-        let corners = mesh.corners(t);
-        for barycentric in rule.points {
+        first.add_points(mesh.corners(t), DEGREE_4.points);
+        second.add_points(mesh.corners(t), &second_rule.on(mesh.triangle_area(t)).points);
+    }
+    first.evaluate(f)?;
+    second.evaluate(f)?;
+    let (mut first, mut second) = (first.values.as_slice(), second.values.as_slice());
+    let cut = CutRule::new(f.jumps().to_vec(), None, JUMP_DEPTH);
+    let shallower = cut.shallower();
+    let mut along_jumps = CutSamples::default();
+    let mut on_triangle = |t: usize| {
+        let (corners, area) = (mesh.corners(t), mesh.triangle_area(t));
+        let rule = second_rule.on(area);
+        let plain = Samples::next(&mut first, DEGREE_4.weights, DEGREE_4.points);
+        let other = Samples::next(&mut second, &rule.weights, &rule.points);
+        if cut.is_plain(corners) {
+            let moments = ElementMoments::new(area, &plain);
+            return Ok((moments, moments.beyond(area, &other)));
+        }
+        let moments = ElementMoments::new(area, &along_jumps.of(corners, f, &cut)?);
+        Ok((moments, moments.beyond(area, &along_jumps.of(corners, f, &shallower)?)))
+    };
+    let mut found = Block::default();
+    for t in triangles {
+        let (moments, Beyond { mean, excess_sq }) = on_triangle(t)?;
+        found.moments.push(moments);
+        found.means.push(mean);
+        found.excess_sq += poincare(mesh.diameter_sq(t).sqrt()).powi(2) * excess_sq;
+    }
+    Ok(found)
+}
+
+/// The triangles of a block.
+fn triangles_of(mesh: &Mesh, block: usize) -> Range<usize> {
+    block * BLOCK..((block + 1) * BLOCK).min(mesh.triangles().len())
+}
+
+/// A function at many points.
+#[derive(Default)]
+struct Values {
+    x: Vec<f64>,
+    y: Vec<f64>,
+    values: Vec<f64>,
+}
+
+impl Values {
+    /// Adds points that are given by their barycentric coordinates.
+    fn add_points(&mut self, corners: [[f64; 2]; 3], points: &[[f64; 3]]) {
+        for barycentric in points {
             let at = |axis: usize| (0..3).map(|i| barycentric[i] * corners[i][axis]).sum::<f64>();
-            x.push(at(0));
-            y.push(at(1));
+            self.x.push(at(0));
+            self.y.push(at(1));
         }
     }
-    let mut values = vec![0.0; x.len()];
-    f.eval_many(&x, &y, &mut values);
-    if let Some(k) = values.iter().position(|value| !value.is_finite()) {
-        return Err(NotFinite { point: [x[k], y[k]], value: values[k] });
+
+    fn evaluate(&mut self, f: &Function) -> Result<(), EvaluationError> {
+        self.values.clear();
+        self.values.resize(self.x.len(), 0.0);
+        f.eval_many(&self.x, &self.y, &mut self.values)
     }
-    let cut = CutRule::new(f.jumps().to_vec(), None, JUMP_DEPTH);
-    let mut along_jumps = CutSamples::default();
-    let on_triangle = |(t, values): (usize, &[f64])| {
-        let (corners, area) = (mesh.corners(t), mesh.triangle_area(t));
-        let samples = if cut.is_plain(corners) {
-            Samples { values, weights: rule.weights, points: rule.points }
-        } else {
-            along_jumps.of(corners, f, &cut)
-        };
-        ElementMoments::new(area, &samples)
-    };
-    Ok(triangles.zip(values.chunks_exact(points)).map(on_triangle).collect())
+
+    fn clear(&mut self) {
+        self.x.clear();
+        self.y.clear();
+    }
 }
 
 /// Memory for the points on a triangle in which a function jumps.
 #[derive(Default)]
 struct CutSamples {
-    values: Vec<f64>,
+    at: Values,
     weights: Vec<f64>,
     points: Vec<[f64; 3]>,
 }
 
 impl CutSamples {
-    fn of(&mut self, corners: [[f64; 2]; 3], f: &Function, cut: &CutRule) -> Samples<'_> {
-        let Self { values, weights, points } = self;
-        values.clear();
+    fn of(
+        &mut self,
+        corners: [[f64; 2]; 3],
+        f: &Function,
+        cut: &CutRule,
+    ) -> Result<Samples<'_>, EvaluationError> {
+        let Self { at, weights, points } = self;
+        at.clear();
         weights.clear();
         points.clear();
         let area = 0.5 * twice_signed_area(corners);
         cut.visit(corners, &mut |point, weight| {
-            values.push(f.eval(point[0], point[1]));
+            at.x.push(point[0]);
+            at.y.push(point[1]);
             weights.push(weight / area);
             points.push(hats(corners, point));
         });
-        Samples { values, weights, points }
+        at.evaluate(f)?;
+        Ok(Samples { values: &at.values, weights, points })
     }
 }
 
@@ -169,3 +311,6 @@ fn hats(corners: [[f64; 2]; 3], point: [f64; 2]) -> [f64; 3] {
     let twice_area = twice_signed_area(corners);
     [0, 1, 2].map(|i| twice_signed_area([point, corners[(i + 1) % 3], corners[(i + 2) % 3]]) / twice_area)
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,10 +1,10 @@
 //! The stiffness matrix.
 
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 use sprs::CsMat;
 
 use super::local_stiffness;
-use crate::mesh::{Mesh, VertexTriangles};
+use crate::mesh::{Mesh, VertexTriangles, corner_of};
 
 /// Rows that are assembled together.
 const BLOCK: usize = 4096;
@@ -61,7 +61,7 @@ fn assemble_rows(mesh: &Mesh, around: &VertexTriangles, vertices: std::ops::Rang
         for &t in around.of(a) {
             let corners = mesh.triangles()[t];
             let local = local_stiffness(mesh.corners(t));
-            let row = corners.iter().position(|&b| b == a).expect("a is a corner of the triangles around it");
+            let row = corner_of(corners, a);
             contributions.extend((0..3).map(|column| (corners[column], t, local[row][column])));
         }
         contributions.sort_unstable_by_key(|&(column, t, _)| (column, t));

@@ -4,6 +4,7 @@ use super::field::constant_outward;
 use super::reconstruct::discrete_flux;
 use super::{Flux, Reconstruction, Reconstructor};
 use crate::mesh::VertexKind;
+use crate::numeric::largest;
 
 /// How far fluxes are from the identities that their reconstruction promises: largest defects over the mesh and both
 /// membranes, as forces relative to `mu_i` times the scale of the displacements. Rounding leaves about `1e-15` times what
@@ -38,10 +39,10 @@ impl FluxDefects {
             let one = OneMembrane { reconstructor, membrane, flux: &flux[membrane] };
             let force = reconstructor.d.tension()[membrane] * reconstructor.d.scales().displacement;
             Self {
-                continuity: largest(one.continuity()) / force,
-                interior: largest(one.interior(&displacement[membrane], kind)) / force,
-                balance: largest(one.balance(&displacement[membrane])) / force,
-                equilibrium: largest(one.equilibrium(lambda, kind)) / force,
+                continuity: largest_size(one.continuity()) / force,
+                interior: largest_size(one.interior(&displacement[membrane], kind)) / force,
+                balance: largest_size(one.balance(&displacement[membrane])) / force,
+                equilibrium: largest_size(one.equilibrium(lambda, kind)) / force,
             }
         };
         let [first, second] = [of_membrane(0), of_membrane(1)];
@@ -65,9 +66,8 @@ impl FluxDefects {
 }
 
 /// The largest absolute value; a NaN counts as infinite.
-fn largest(defects: impl IntoIterator<Item = f64>) -> f64 {
-    let size = |x: f64| if x.is_nan() { f64::INFINITY } else { x.abs() };
-    defects.into_iter().map(size).fold(0.0, f64::max)
+fn largest_size(defects: impl IntoIterator<Item = f64>) -> f64 {
+    largest(defects.into_iter().map(f64::abs))
 }
 
 struct OneMembrane<'a> {

@@ -1,6 +1,6 @@
 //! The wedges `D_a cap K` around each vertex, in order.
 
-use crate::mesh::{Mesh, VertexTriangles};
+use crate::mesh::{Mesh, VertexTriangles, corner_of};
 
 /// Wedges that follow one another counterclockwise around a vertex: around an interior one they close, at a boundary
 /// vertex there is one fan for each sector of the domain.
@@ -19,9 +19,9 @@ pub(super) fn fans(mesh: &Mesh) -> Vec<Fan> {
     for a in 0..mesh.points().len() {
         let triangles = around.of(a);
         sides.clear();
-        sides.extend(triangles.iter().map(|&k| corner_of(mesh, k, a).1));
+        sides.extend(triangles.iter().map(|&k| wedge_of(mesh, k, a).1));
         walk.fans(&sides, |fan, closed| {
-            let wedge = |&place: &usize| 3 * triangles[place] + corner_of(mesh, triangles[place], a).0;
+            let wedge = |&place: &usize| 3 * triangles[place] + wedge_of(mesh, triangles[place], a).0;
             fans.push(Fan { wedges: fan.iter().map(wedge).collect(), closed });
         });
     }
@@ -29,9 +29,9 @@ pub(super) fn fans(mesh: &Mesh) -> Vec<Fan> {
 }
 
 /// Which corner of triangle `k` vertex `a` is, and the two others counterclockwise.
-pub(super) fn corner_of(mesh: &Mesh, k: usize, a: usize) -> (usize, [usize; 2]) {
+pub(super) fn wedge_of(mesh: &Mesh, k: usize, a: usize) -> (usize, [usize; 2]) {
     let triangle = mesh.triangles()[k];
-    let corner = triangle.iter().position(|&b| b == a).expect("a is a corner of the triangles around it");
+    let corner = corner_of(triangle, a);
     (corner, [1, 2].map(|j| triangle[(corner + j) % 3]))
 }
 

@@ -4,9 +4,9 @@
 //! known from what enters through the first half edge and from the source in the wedge; its square is a quadratic form of
 //! the two.
 
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
-use super::fan::{Walk, corner_of};
+use super::fan::{Walk, wedge_of};
 use super::field::through;
 use super::reconstruct::flux_on;
 use crate::discretization::Discretization;
@@ -162,7 +162,7 @@ impl Data<'_> {
         wedges.clear();
         sides.clear();
         for &k in self.around.of(a) {
-            let (corner, [next, last]) = corner_of(self.mesh, k, a);
+            let (corner, [next, last]) = wedge_of(self.mesh, k, a);
             wedges.push(self.wedge(k, corner, [a, next, last]));
             sides.push([next, last]);
         }

@@ -1,10 +1,12 @@
-//! Reads the triangles of a Gmsh mesh: MSH 2.2 and 4.1, ASCII and binary in either byte order.
+//! Reads the triangles of a Gmsh mesh: MSH 2.0 to 2.2 and 4.1, ASCII and binary in either byte order, and MSH 4.0 in ASCII.
 //!
 //! What the file says is checked here (indices, finite and flat coordinates); whether the triangles form a
 //! valid triangulation is for the mesh made from them to decide. Format: Gmsh reference manual, "MSH file format".
 
 mod elements;
+mod entities;
 mod error;
+mod groups;
 mod nodes;
 mod scanner;
 #[cfg(test)]
@@ -13,11 +15,15 @@ mod v2;
 mod v4;
 
 pub use error::{GmshError, Place};
+pub use groups::PhysicalGroup;
 
 use crate::text::excerpt;
 use elements::Elements;
+use entities::{entities, partitioned_entities};
+use groups::Groups;
 use nodes::Nodes;
 use scanner::{ByteOrder, Encoding, Scanner};
+use v4::Layout;
 
 /// Largest height of a node above the plane of the mesh, relative to the larger side of the box around the mesh.
 ///
@@ -26,7 +32,7 @@ pub const FLATNESS: f64 = 1e-8;
 
 /// The triangles of a Gmsh mesh in a plane `z = constant`, as they stand in the file.
 ///
-/// Points, lines and physical groups of the file are left out. The nodes that only they use are kept.
+/// Points and lines of the file are left out. The nodes that only they use are kept.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GmshTriangulation {
     /// `(x, y)` of every node, in the order of the file, also of nodes that no triangle uses.
@@ -37,33 +43,43 @@ pub struct GmshTriangulation {
     pub node_tags: Vec<u64>,
     /// The number that Gmsh gave to each triangle; as long as `triangles`.
     pub element_tags: Vec<u64>,
+    /// The physical groups that have a name or members, by dimension and tag, each once.
+    pub groups: Vec<PhysicalGroup>,
 }
 
 /// Reads a mesh from the bytes of a `.msh` file.
 ///
-/// Sections other than `$Nodes` and `$Elements` are skipped. A surface that is in several physical groups is
-/// written several times by MSH 2.2: each triangle is taken once.
+/// What Gmsh reads is read: other sections, also before `$MeshFormat`, and lines between sections are skipped; the totals at
+/// the head of the sections of MSH 4 may be wrong, the blocks count. A surface that is in several physical groups is written
+/// several times by MSH 2: each triangle is taken once.
 ///
 /// # Errors
-/// When the file is no complete MSH 2.2 or 4.1 file, holds text outside its sections, holds elements that are
-/// not triangles of three nodes (points and lines aside) or no triangle, names a node that does not exist, or
-/// when the triangles are not [flat](FLATNESS). Memory and time stay proportional to the length of `bytes`,
-/// whatever the file declares.
+/// When the file is no complete file of these versions, holds elements that are not triangles of three nodes (points and lines
+/// aside) or no triangle, names a node that does not exist, or when the triangles are not [flat](FLATNESS). Memory and time
+/// stay proportional to the length of `bytes`, whatever the file declares.
 pub fn parse(bytes: &[u8]) -> Result<GmshTriangulation, GmshError> {
     let (mut scanner, version) = read_format(bytes)?;
+    let mut groups = Groups::default();
     let mut nodes = None;
     let mut elements = None;
     while let Some(section) = scanner.open_section()? {
+        if !version.knows(section) {
+            scanner.skip_section()?;
+            scanner.close_section()?;
+            continue;
+        }
+        scanner.end_line()?;
         match section {
-            "Nodes" if nodes.is_some() => return Err(scanner.repeated_section()),
             "Elements" if elements.is_some() => return Err(scanner.repeated_section()),
-            "Nodes" => nodes = Some(version.nodes(&mut scanner)?),
             "Elements" => {
                 let nodes = nodes.as_ref().ok_or(GmshError::MissingNodes)?;
-                elements = Some(version.elements(&mut scanner, nodes)?);
+                elements = Some(version.elements(&mut scanner, nodes, &mut groups)?);
             }
-            "ParametricNodes" => return Err(GmshError::ParametricNodes),
-            _ => scanner.skip_section()?,
+            "PhysicalNames" => groups.read_names(&mut scanner, version.names_have_dimensions())?,
+            "Entities" => entities(&mut scanner, version.layout(), &mut groups)?,
+            "PartitionedEntities" => partitioned_entities(&mut scanner, version.layout(), &mut groups)?,
+            _ if nodes.is_some() => return Err(scanner.repeated_section()),
+            _ => nodes = Some(version.nodes(&mut scanner, section)?),
         }
         scanner.close_section()?;
     }
@@ -78,27 +94,84 @@ pub fn parse(bytes: &[u8]) -> Result<GmshTriangulation, GmshError> {
         triangles: elements.triangles,
         node_tags: nodes.tags,
         element_tags: elements.tags,
+        groups: groups.into_groups(),
     })
 }
 
-/// The two layouts of `$Nodes` and `$Elements`.
+/// The layouts of the sections.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Version {
-    V2,
-    V4,
+    V20,
+    /// MSH 2.1 and 2.2.
+    V21,
+    V40,
+    V41,
 }
 
 impl Version {
-    fn nodes(&self, scanner: &mut Scanner) -> Result<Nodes, GmshError> {
-        match self {
-            Self::V2 => v2::nodes(scanner),
-            Self::V4 => v4::nodes(scanner),
+    /// The one with this number.
+    fn from_number(number: f64) -> Option<Self> {
+        match number {
+            2.0 => Some(Self::V20),
+            2.1 | 2.2 => Some(Self::V21),
+            4.0 => Some(Self::V40),
+            4.1 => Some(Self::V41),
+            _ => None,
         }
     }
 
-    fn elements(&self, scanner: &mut Scanner, nodes: &Nodes) -> Result<Elements, GmshError> {
+    /// Whether it has a section of this name that is read; the others are skipped.
+    fn knows(self, section: &str) -> bool {
+        match section {
+            "Nodes" | "Elements" | "PhysicalNames" => true,
+            "ParametricNodes" => matches!(self, Self::V20 | Self::V21),
+            "Entities" | "PartitionedEntities" => matches!(self, Self::V40 | Self::V41),
+            _ => false,
+        }
+    }
+
+    fn names_have_dimensions(self) -> bool {
+        self != Self::V20
+    }
+
+    /// That of the sections of MSH 4.
+    fn layout(self) -> Layout {
+        if self == Self::V40 { Layout::V40 } else { Layout::V41 }
+    }
+
+    fn nodes(self, scanner: &mut Scanner, section: &str) -> Result<Nodes, GmshError> {
         match self {
-            Self::V2 => v2::elements(scanner, nodes),
-            Self::V4 => v4::elements(scanner, nodes),
+            Self::V20 | Self::V21 => v2::nodes(scanner, section == "ParametricNodes"),
+            Self::V40 | Self::V41 => v4::nodes(scanner, self.layout()),
+        }
+    }
+
+    fn elements(
+        self,
+        scanner: &mut Scanner,
+        nodes: &Nodes,
+        groups: &mut Groups,
+    ) -> Result<Elements, GmshError> {
+        match self {
+            Self::V20 | Self::V21 => v2::elements(scanner, nodes, groups),
+            Self::V40 | Self::V41 => v4::elements(scanner, self.layout(), nodes),
+        }
+    }
+}
+
+/// Goes to `$MeshFormat`, over comments and sections that may stand before it.
+fn find_format(scanner: &mut Scanner) -> Result<(), GmshError> {
+    loop {
+        match scanner.open_section() {
+            Ok(Some("MeshFormat")) => return scanner.end_line(),
+            Ok(Some("NOD" | "NOE")) => return Err(GmshError::Version { found: "1".into() }),
+            Ok(Some("Nodes" | "ParametricNodes" | "Elements") | None) | Err(_) => {
+                return Err(GmshError::NotGmsh);
+            }
+            Ok(Some(_)) => {
+                scanner.skip_section().map_err(|_| GmshError::NotGmsh)?;
+                scanner.close_section()?;
+            }
         }
     }
 }
@@ -106,28 +179,24 @@ impl Version {
 /// Reads `$MeshFormat`, which tells how to read the rest.
 fn read_format(bytes: &[u8]) -> Result<(Scanner<'_>, Version), GmshError> {
     let mut scanner = Scanner::new(bytes);
-    match scanner.open_section() {
-        Ok(Some("MeshFormat")) => {}
-        Ok(Some("NOD")) => return Err(GmshError::Version { found: "1".into() }),
-        _ => return Err(GmshError::NotGmsh),
-    }
+    find_format(&mut scanner)?;
     let found = scanner.word("the version of the format")?;
-    let version = match found.parse::<f64>() {
-        Ok(2.2) => Version::V2,
-        Ok(4.1) => Version::V4,
-        _ => return Err(GmshError::Version { found: excerpt(found) }),
-    };
+    let version = found.parse().ok().and_then(Version::from_number);
+    let version = version.ok_or_else(|| GmshError::Version { found: excerpt(found) })?;
     let binary = match scanner.word("the type of the file")? {
         "0" => false,
         "1" => true,
         found => return Err(scanner.unexpected("the type of the file, 0 or 1", found)),
     };
-    match scanner.word("the size of a number")? {
-        "8" => {}
-        found => return Err(GmshError::DataSize { found: excerpt(found) }),
-    }
+    let size = scanner.word("the size of a number")?;
     scanner.end_line()?;
     if binary {
+        if version == Version::V40 {
+            return Err(GmshError::Binary40);
+        }
+        if size != "8" {
+            return Err(GmshError::DataSize { found: excerpt(size) });
+        }
         let order = match scanner.bytes("the integer 1 that shows the byte order")? {
             [1, 0, 0, 0] => ByteOrder::Little,
             [0, 0, 0, 1] => ByteOrder::Big,

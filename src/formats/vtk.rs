@@ -103,7 +103,13 @@ pub(crate) fn write_grid(
         let first = if has_lambda { r#" Scalars="lambda""# } else { "" };
         writeln!(out, "<{section}{first}>")?;
         for DataArray { name, kind, components, bytes } in *arrays {
-            let attributes = format!(r#"type="{kind}" Name="{name}" NumberOfComponents="{components}""#);
+            // Of a scalar with a number of components, meshio makes an array of one column.
+            let components = if *components == 1 {
+                String::new()
+            } else {
+                format!(r#" NumberOfComponents="{components}""#)
+            };
+            let attributes = format!(r#"type="{kind}" Name="{name}"{components}"#);
             write_array(out, &attributes, bytes)?;
         }
         writeln!(out, "</{section}>")?;
@@ -180,6 +186,18 @@ pub(crate) mod samples {
 mod tests {
     use super::samples::{floats, integers, read_array};
     use super::*;
+
+    #[test]
+    fn vectors_alone_have_a_number_of_components() {
+        let data = [DataArray::floats("scalar", [1.0]), DataArray::vectors("vector", [[1.0, 2.0]])];
+        let cells = Cells::new(VTK_POLYGON, std::iter::empty::<[usize; 3]>());
+        let mut file = Vec::new();
+        write_grid(&mut file, &[[0.0, 0.0]], &cells, &[(Location::Points, &data)]).unwrap();
+        let file = String::from_utf8(file).unwrap();
+        let line = |name: &str| file.lines().find(|line| line.contains(name)).unwrap();
+        assert!(!line(r#"Name="scalar""#).contains("NumberOfComponents"));
+        assert!(line(r#"Name="vector""#).contains(r#"NumberOfComponents="3""#));
+    }
 
     #[test]
     fn arrays_of_no_one_and_several_blocks_are_read_back() {

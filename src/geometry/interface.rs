@@ -3,6 +3,7 @@
 /// A curve across which the action or a second or higher derivative of the gap may jump: the free boundary
 /// and the borders of biactive sets. An error norm has to cut its quadrature there.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum Interface {
     /// A circle.
     Circle {

@@ -10,6 +10,7 @@ pub(crate) fn distance_sq(a: [f64; 2], b: [f64; 2]) -> f64 {
     (b[0] - a[0]).powi(2) + (b[1] - a[1]).powi(2)
 }
 
+#[cfg(feature = "pictures")]
 /// The gradients of the three barycentric coordinates, `None` for a triangle without area.
 pub(crate) fn barycentric_gradients(corners: [[f64; 2]; 3]) -> Option<[[f64; 2]; 3]> {
     let [a, b, c] = corners;

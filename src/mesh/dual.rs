@@ -1,6 +1,6 @@
 //! The dual mesh `D_h` of section 4.2 and the triangulation `S_h` between it and `T_h`.
 
-use super::topology::Midpoints;
+use super::topology::{Midpoints, corner_of};
 use super::{Mesh, MeshError, VertexKind, VertexTriangles};
 use crate::geometry::twice_signed_area;
 
@@ -20,7 +20,7 @@ impl SubTriangulation {
     /// Divides the triangles of `mesh`. Linear time.
     ///
     /// # Errors
-    /// [`MeshError`] when the parts are too small to be represented.
+    /// [`MeshError::TooSmall`] when parts of a triangle are too small to be told apart.
     pub fn new(mesh: &Mesh) -> Result<Self, MeshError> {
         let vertices = mesh.points.len();
         let midpoints = Midpoints::new(mesh);
@@ -37,7 +37,10 @@ impl SubTriangulation {
                 triangles.push([corners[i], barycentre, towards_previous]);
             }
         }
-        Ok(Self { mesh: Mesh::new(points, triangles)?, vertices, edges })
+        // Parts of a triangulation are one, up to rounding.
+        let divided = Mesh::new(points, triangles)
+            .map_err(|error| mesh.too_small(error.triangle().map_or(0, |part| part / 6)))?;
+        Ok(Self { mesh: divided, vertices, edges })
     }
 
     /// The sub-triangles as a mesh. Its points are the vertices of `T_h`, the midpoints of its edges, its barycentres.
@@ -83,8 +86,7 @@ impl DualMesh {
         for &a in &vertices {
             let mut midpoint = 0;
             for &k in around.of(a) {
-                let i =
-                    mesh.triangles[k].iter().position(|&b| b == a).expect("a is a corner of its triangles");
+                let i = corner_of(mesh.triangles[k], a);
                 let [_, first, barycentre] = sub.mesh.triangles[6 * k + 2 * i];
                 let [_, _, next] = sub.mesh.triangles[6 * k + 2 * i + 1];
                 leaves[first] = (barycentre, next);

@@ -4,6 +4,6 @@ mod adjacency;
 mod edges;
 mod midpoints;
 
-pub(crate) use adjacency::{HalfEdge, HalfEdges, VertexTriangles};
+pub(crate) use adjacency::{HalfEdge, HalfEdges, VertexTriangles, corner_of};
 pub(super) use edges::Edges;
 pub(super) use midpoints::Midpoints;

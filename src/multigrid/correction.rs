@@ -1,4 +1,13 @@
 //! The linear cycle on the coarser levels, truncated.
+//!
+//! No part of it raises the energy `1/2 x'A x - b'x` of its level: a relaxation makes it least in one coordinate (where truncation
+//! has coupled rows of a colour, one row after the other); the level below has the matrix `P'A P` and the whole residual
+//! `P'(b - A x)`, so that a correction with an energy of at most zero there changes the energy here by as much; and the direct
+//! solve at the bottom makes least an energy that is larger by a fraction of the diagonal, which is zero at zero. So the correction
+//! lowers the energy of the finest level too, as long as the obstacle does not cut it off: only then it has to be looked at.
+
+#[cfg(test)]
+mod tests;
 
 use super::direct::Direct;
 use super::sweep::{ascend, descend};
@@ -17,6 +26,11 @@ const UNSETTLED_TWICE: usize = 2;
 
 /// The level whose corrections are exact already: it is solved directly below.
 const EXACT: usize = 1;
+
+/// All visits of a level in a cycle together are to more rows than those of the level above by this factor at most. So a cycle
+/// costs a few times the finest level, whatever the levels are: if each had two corrections from a level with more than half of
+/// its rows, the visits of the coarsest would decide, two to the power of the number of levels.
+const SHRINKING: f64 = 0.75;
 
 /// The coarser levels with their vectors.
 pub(crate) struct CoarseLevels<'h> {
@@ -45,9 +59,9 @@ impl Matrices<'_> {
 }
 
 impl<'h> CoarseLevels<'h> {
-    /// With an `obstacle` they can be truncated.
-    pub(crate) fn new(hierarchy: &'h Hierarchy, obstacle: bool) -> Result<Self, NotFactored> {
-        let coarser = || hierarchy.levels()[..hierarchy.finest()].iter();
+    /// The levels `0..levels`; with an `obstacle` they can be truncated.
+    pub(crate) fn new(hierarchy: &'h Hierarchy, levels: usize, obstacle: bool) -> Result<Self, NotFactored> {
+        let coarser = || hierarchy.levels()[..levels].iter();
         let zeros = || coarser().map(|level| vec![0.0; level.pattern.rows()]).collect();
         let matrices = match obstacle {
             true => Matrices::Truncated(Truncation::new(hierarchy)),
@@ -91,20 +105,28 @@ impl<'h> CoarseLevels<'h> {
             }
             twice_up_to = finest.saturating_sub(if changed.is_empty() { TWICE } else { UNSETTLED_TWICE });
         }
-        self.cycle(finest - 1, twice_up_to)
+        let visits = visits(self.hierarchy, finest, twice_up_to);
+        self.cycle(finest - 1, &visits)
+    }
+
+    /// A cycle on level `l` for the functional `b`, with one correction from each level below.
+    pub(super) fn v_cycle(&mut self, l: usize, b: &[f64]) -> Result<&[f64], NotFactored> {
+        self.b[l].copy_from_slice(b);
+        self.cycle(l, &vec![1; l + 1])?;
+        Ok(&self.x[l])
     }
 
     /// A cycle on level `l` from zero.
-    fn cycle(&mut self, l: usize, twice_up_to: usize) -> Result<(), NotFactored> {
+    fn cycle(&mut self, l: usize, visits: &[usize]) -> Result<(), NotFactored> {
         if l == 0 {
             self.x[0] = self.direct.solve(&self.b[0])?;
             return Ok(());
         }
         self.descend(l);
-        self.cycle(l - 1, twice_up_to)?;
-        if EXACT < l && l <= twice_up_to {
+        self.cycle(l - 1, visits)?;
+        if visits[l - 1] > visits[l] {
             self.ascend(l, true);
-            self.cycle(l - 1, twice_up_to)?;
+            self.cycle(l - 1, visits)?;
         }
         self.ascend(l, false);
         Ok(())
@@ -125,4 +147,20 @@ impl<'h> CoarseLevels<'h> {
         let level = &self.hierarchy.levels()[l];
         ascend(level, self.matrices.values(l), &b[0], &x_below[l - 1], &mut x[0], functional);
     }
+}
+
+/// How often a cycle below `finest` comes to each level below: twice as often as to the level above, or as often. Levels above
+/// `twice_up_to` have one correction, and so has every level at which two would be too much work.
+fn visits(hierarchy: &Hierarchy, finest: usize, twice_up_to: usize) -> Vec<usize> {
+    let rows = |l: usize| hierarchy.levels()[l].pattern.rows() as f64;
+    let mut visits = vec![1; finest];
+    let mut allowed = rows(finest);
+    for l in (0..finest).rev() {
+        allowed *= SHRINKING;
+        if l + 1 < finest {
+            let twice = EXACT <= l && l < twice_up_to && 2.0 * visits[l + 1] as f64 * rows(l) <= allowed;
+            visits[l] = if twice { 2 * visits[l + 1] } else { visits[l + 1] };
+        }
+    }
+    visits
 }

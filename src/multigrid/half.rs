@@ -2,8 +2,8 @@
 //! J. Comput. Math. 27 (2009) 1).
 //!
 //! A cycle is a linear one on the coarser levels, truncated at the vertices that are pressed into contact, then projected Gauss-Seidel on the
-//! finest level. Every part of it lowers the energy; where the correction has been cut off at the obstacle and the energy
-//! has not fallen, it is damped by an exact line search. Once the contact set stays, the cycles solve the linear system
+//! finest level. Every part of it lowers the energy (why, is said with the [cycle](super::correction)); where the correction has been
+//! cut off at the obstacle and the energy has not fallen, it is damped by an exact line search. Once the contact set stays, the cycles solve the linear system
 //! of a step of the active set method.
 
 use std::time::Instant;
@@ -69,7 +69,7 @@ pub(crate) fn solve(
 ) -> Result<HalfSolution, NotFactored> {
     let HalfProblem { load, height, lower, weight, start } = problem;
     let (loads, heights) = hierarchy.lifted(load, height);
-    let mut coarse = CoarseLevels::new(hierarchy, lower.is_finite())?;
+    let mut coarse = CoarseLevels::new(hierarchy, hierarchy.finest(), lower.is_finite())?;
     let unweighted = vec![1.0; hierarchy.levels()[hierarchy.finest() - 1].pattern.rows()];
     let on_level = |l: usize| {
         let (weight, tolerance) = if l == hierarchy.finest() { (&weight, 1.0) } else { (&unweighted, 0.0) };

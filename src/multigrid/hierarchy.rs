@@ -1,11 +1,12 @@
 //! The levels of a discretization: its stiffness matrix on coarser and coarser spaces.
 //!
-//! They follow the refinements that made the mesh; below its coarsest ancestor, and on a mesh without ancestors, they are
-//! algebraic.
+//! They follow the refinements that made the mesh, as long as each halves the unknowns; below these, and on a mesh without
+//! ancestors, they are algebraic. So the levels together are at most a few times the finest one, whatever the refinements were.
 
 mod coarsening;
 mod coloring;
 mod galerkin;
+mod genealogy;
 mod matrix;
 mod ordering;
 mod runs;
@@ -15,20 +16,20 @@ mod tests;
 
 pub(crate) use coloring::Coloring;
 pub(crate) use galerkin::RowSum;
+pub(crate) use genealogy::{Genealogy, Mean};
 pub(crate) use matrix::{Pattern, Values};
 pub(crate) use runs::{LONGEST, Runs};
 pub(crate) use transfer::Transfer;
 
-use std::sync::Arc;
-
-use rayon::prelude::*;
+use sprs::CsMat;
 
 use crate::discretization::Discretization;
-use crate::mesh::{Parents, VertexKind};
+use crate::mesh::VertexKind;
+use crate::parallel::prelude::*;
 use coarsening::coarsened;
 use galerkin::galerkin;
 use matrix::{BLOCK, compact_stiffness, reordered};
-use ordering::{banded_orders, is_banded};
+use ordering::{banded_order, inverse, is_banded};
 
 /// An entry below this fraction of the diagonal does not couple two rows: rounding of a Galerkin product.
 const UNCOUPLED: f64 = 1e-10;
@@ -40,7 +41,11 @@ const SAME_ENTRY: f64 = 1e-10;
 /// As many unknowns are solved for directly.
 const DIRECT: usize = 64;
 
-/// A coarser level that keeps more than this fraction of the unknowns is not worth having.
+/// A level that follows the refinements has at most this fraction of the unknowns of the finer one; else algebraic levels are
+/// better, which need a quarter to a half of them.
+const SLOW_REFINEMENT: f64 = 0.5;
+
+/// An algebraic level that keeps more than this fraction of the unknowns is not worth having.
 const SLOW_COARSENING: f64 = 0.9;
 
 /// The stiffness matrix on a hierarchy of spaces, from the coarsest to that of the mesh. Level 0 repeats level 1: there
@@ -49,6 +54,7 @@ pub(crate) struct Hierarchy {
     levels: Vec<Level>,
     /// The vertex of the mesh to which each row of the finest level belongs.
     vertex: Vec<u32>,
+    refinements: usize,
 }
 
 /// One space. Rows belong to the vertices, in the numbering of the level; those of held vertices (on the boundary, or in no
@@ -66,51 +72,36 @@ pub(crate) struct Level {
 impl Hierarchy {
     /// Makes the levels of a discretization.
     pub(crate) fn new(d: &Discretization) -> Self {
-        Self::over(d, d.mesh().ancestry())
+        Self::over(d.stiffness(), d.mesh().kind(), &Genealogy::of(d.mesh()))
     }
 
     /// Likewise, but all levels are algebraic: on stretched triangles coarser meshes are no good, because they are coarser also
     /// along the long sides, where neighbours are hardly coupled.
     pub(crate) fn algebraic(d: &Discretization) -> Self {
-        Self::over(d, &[])
+        let vertices = d.mesh().points().len();
+        Self::over(d.stiffness(), d.mesh().kind(), &Genealogy::unknown(vertices))
     }
 
-    fn over(d: &Discretization, ancestry: &[Arc<Parents>]) -> Self {
-        let mut orders = orders(d, ancestry);
-        let finest_order = orders.as_mut().and_then(Vec::pop);
-        let (coloring, vertex) = finest_coloring(d, finest_order.as_deref());
-        let (pattern, values) = compact_stiffness(d, &vertex);
-        let finest = Level::new(pattern, values, coloring, 0.0);
-        let mut order = vertex.clone();
-        let mut finest_first = vec![finest];
-        for parents in ancestry.iter().rev() {
-            let coarse_order = orders.as_mut().and_then(Vec::pop);
-            let position = coarse_order.as_deref().map(inverse);
-            let of_row = |&a: &u32| parents.ends()[a as usize];
-            let in_order = |a: u32| position.as_ref().map_or(a, |position| position[a as usize]);
-            let ends =
-                order.par_iter().with_min_len(BLOCK).map(of_row).map(|ends| ends.map(in_order)).collect();
-            let transfer = Transfer::from_midpoints(parents.coarse_vertices(), ends);
-            let Some(rows) = descend(&mut finest_first, transfer) else { break };
-            order = composed(coarse_order.as_deref(), rows);
-        }
-        while finest_first[finest_first.len() - 1].unknowns() > DIRECT {
-            let coarsest = &finest_first[finest_first.len() - 1];
-            let unknowns = coarsest.unknowns();
-            let transfer = coarsened(&coarsest.pattern, &coarsest.values);
-            if descend(&mut finest_first, transfer).is_none() {
-                break;
-            }
-            if finest_first[finest_first.len() - 1].unknowns() as f64 > SLOW_COARSENING * unknowns as f64 {
-                break;
-            }
-        }
+    /// Makes the levels of a stiffness matrix over the vertices of a mesh, of these kinds and with this genealogy.
+    pub(crate) fn over(k: &CsMat<f64>, kind: &[VertexKind], genealogy: &Genealogy) -> Self {
+        let banded = (!is_banded(k.rows(), bandwidth(k, |a| a))).then(|| banded_order(k, genealogy));
+        let (coloring, vertex) = finest_coloring(k, kind, banded.as_deref());
+        let (pattern, values) = compact_stiffness(k, kind, &vertex);
+        let mut finest_first = vec![Level::new(pattern, values, coloring, 0.0)];
+        let banded = banded.unwrap_or_else(|| (0..k.rows() as u32).collect());
+        let refinements = follow_refinements(&mut finest_first, kind, genealogy, banded, vertex.clone());
+        coarsen(&mut finest_first);
         let coarsest = finest_first.last_mut().expect("there is a finest level");
         coarsest.transfer = Transfer::identity(coarsest.pattern.rows());
         let direct = Level { transfer: Transfer::default(), ..coarsest.clone() };
         finest_first.push(direct);
         finest_first.reverse();
-        Self { levels: finest_first, vertex }
+        Self { levels: finest_first, vertex, refinements }
+    }
+
+    /// How many levels follow the refinements that made the mesh.
+    pub(crate) fn refinements(&self) -> usize {
+        self.refinements
     }
 
     pub(crate) fn levels(&self) -> &[Level] {
@@ -159,9 +150,78 @@ impl Hierarchy {
     }
 }
 
+/// Makes levels that follow the refinements, below the finest one, whose rows belong to these vertices. `banded` are the vertices
+/// in the order that the windows follow. Returns how many there are.
+fn follow_refinements(
+    finest_first: &mut Vec<Level>,
+    kind: &[VertexKind],
+    genealogy: &Genealogy,
+    mut banded: Vec<u32>,
+    mut of_row: Vec<u32>,
+) -> usize {
+    let unknowns = |vertices: &[u32]| {
+        vertices.par_iter().with_min_len(BLOCK).filter(|&&a| kind[a as usize] == VertexKind::Interior).count()
+    };
+    let mut fine_unknowns = unknowns(&banded);
+    let mut number = vec![0; kind.len()];
+    for generation in 1.. {
+        banded.retain(|&a| genealogy.is_on_level(a, generation));
+        let coarse_unknowns = unknowns(&banded);
+        if coarse_unknowns as f64 > SLOW_REFINEMENT * fine_unknowns as f64 {
+            return generation - 1;
+        }
+        fine_unknowns = coarse_unknowns;
+        (0..).zip(&banded).for_each(|(i, &a)| number[a as usize] = i);
+        let transfer = transfer(genealogy, generation, &of_row, banded.len(), &number);
+        let Some(rows) = descend(finest_first, transfer) else { return generation - 1 };
+        of_row = composed(Some(&banded), rows);
+    }
+    unreachable!("some generation is the last")
+}
+
+/// From the vertices of a generation, which have these numbers, to those of the one before, in the order of its rows.
+fn transfer(
+    genealogy: &Genealogy,
+    generation: usize,
+    of_row: &[u32],
+    coarse_rows: usize,
+    number: &[u32],
+) -> Transfer {
+    let mean = |&a: &u32| {
+        let is_kept = genealogy.is_on_level(a, generation);
+        let vertices = if is_kept { Mean::of_one(a) } else { genealogy.parents(a) };
+        vertices.renumbered(number)
+    };
+    let means: Vec<Mean> = of_row.par_iter().with_min_len(BLOCK).map(mean).collect();
+    Transfer::from_means(coarse_rows, &means)
+}
+
+/// Makes algebraic levels until few unknowns are left.
+fn coarsen(finest_first: &mut Vec<Level>) {
+    let unknowns = |levels: &[Level]| levels[levels.len() - 1].unknowns();
+    while unknowns(finest_first) > DIRECT {
+        let coarsest = &finest_first[finest_first.len() - 1];
+        let before = coarsest.unknowns();
+        let transfer = coarsened(&coarsest.pattern, &coarsest.values);
+        if descend(finest_first, transfer).is_none()
+            || unknowns(finest_first) as f64 > SLOW_COARSENING * before as f64
+        {
+            return;
+        }
+    }
+}
+
+/// The largest distance of two neighbours that are in these places.
+fn bandwidth(k: &CsMat<f64>, place: impl Fn(usize) -> usize + Sync) -> usize {
+    let reach = |a: usize| {
+        let row = &k.indices()[k.indptr().outer_inds_sz(a)];
+        row.iter().map(|&b| place(a).abs_diff(place(b))).max().unwrap_or(0)
+    };
+    (0..k.rows()).into_par_iter().with_min_len(BLOCK).map(reach).max().unwrap_or(0)
+}
+
 /// Windows and colours of the finest level, and the vertices of its rows; `order` is the order that the windows follow.
-fn finest_coloring(d: &Discretization, order: Option<&[u32]>) -> (Coloring, Vec<u32>) {
-    let (k, kind) = (d.stiffness(), d.mesh().kind());
+fn finest_coloring(k: &CsMat<f64>, kind: &[VertexKind], order: Option<&[u32]>) -> (Coloring, Vec<u32>) {
     let position = order.map(inverse);
     let vertex = |i: usize| order.map_or(i, |order| order[i] as usize);
     let row = |a: usize| {
@@ -176,9 +236,7 @@ fn finest_coloring(d: &Discretization, order: Option<&[u32]>) -> (Coloring, Vec<
         let entries = row(a).filter(move |&(b, value)| free && b != a && value.abs() > UNCOUPLED * diagonal);
         entries.filter(|&(b, _)| kind[b] == VertexKind::Interior).map(|(b, _)| place(b))
     };
-    let reach = |i: usize| row(vertex(i)).map(|(b, _)| i.abs_diff(place(b))).max().unwrap_or(0);
-    let bandwidth = (0..k.rows()).into_par_iter().with_min_len(BLOCK).map(reach).max().unwrap_or(0);
-    let (coloring, rows) = Coloring::new(k.rows(), bandwidth, coupled);
+    let (coloring, rows) = Coloring::new(k.rows(), bandwidth(k, place), coupled);
     (coloring, composed(order, rows))
 }
 
@@ -214,6 +272,7 @@ impl Level {
     /// to a fraction `same_entry` of the diagonal.
     fn new(pattern: Pattern, mut values: Values, coloring: Coloring, same_entry: f64) -> Self {
         let (runs, shared) = Runs::new(&coloring, &pattern, &values, same_entry);
+        values.replaced = vec![false; shared.len()];
         values.shared = shared;
         Self { pattern, values, coloring, runs, transfer: Transfer::default() }
     }
@@ -245,45 +304,10 @@ impl Level {
     }
 }
 
-/// The vertices of the meshes of the ancestry and of the mesh itself in banded orders; `None` when that of the mesh is
-/// banded as it is, as those of structured meshes are.
-fn orders(d: &Discretization, ancestry: &[Arc<Parents>]) -> Option<Vec<Vec<u32>>> {
-    let k = d.stiffness();
-    let reach = |a: usize| {
-        let row = k.outer_view(a).expect("a vertex has a row");
-        let ends = [row.indices().first(), row.indices().last()];
-        ends.into_iter().flatten().map(|&b| a.abs_diff(b)).max().unwrap_or(0)
-    };
-    let bandwidth = (0..k.rows()).into_par_iter().with_min_len(BLOCK).map(reach).max().unwrap_or(0);
-    if is_banded(k.rows(), bandwidth) {
-        return None;
-    }
-    // The edges of the coarsest mesh have the first midpoints; without an ancestry they are the entries of the matrix.
-    let (vertices, edges): (usize, Vec<[u32; 2]>) = match ancestry.first() {
-        Some(parents) => {
-            let edges = parents.ends().iter().copied().filter(|[a, b]| a != b);
-            (parents.coarse_vertices(), edges.collect())
-        }
-        None => {
-            let entries = k.iter().map(|(_, (a, b))| [a as u32, b as u32]);
-            (k.rows(), entries.filter(|[a, b]| a < b).collect())
-        }
-    };
-    Some(banded_orders(vertices, &edges, ancestry))
-}
-
 /// The vertices of the rows, when these are numbers in an order of the vertices.
 fn composed(order: Option<&[u32]>, rows: Vec<u32>) -> Vec<u32> {
     match order {
         Some(order) => rows.into_iter().map(|row| order[row as usize]).collect(),
         None => rows,
     }
-}
-
-fn inverse(order: &[u32]) -> Vec<u32> {
-    let mut position = vec![0; order.len()];
-    for (i, &old) in order.iter().enumerate() {
-        position[old as usize] = i as u32;
-    }
-    position
 }

@@ -241,9 +241,7 @@ pub(crate) fn descend(level: &Level, values: &Values, b: &[f64], x: &mut [f64], 
     coarse.fill(0.0);
     coloring.pipeline(relaxations + 1, |stage, window| {
         if stage == 0 {
-            for i in coloring.rows(window, 0) {
-                x[i] = b[i] * values.inverse[i];
-            }
+            relax_from_zero(level, values, b, level.runs.of(window, 0), x);
         } else if stage < relaxations {
             relax(level, values, b, level.runs.of(window, stage % colors), x);
         } else {
@@ -284,7 +282,8 @@ pub(crate) fn ascend(
     });
 }
 
-/// Adds the restriction of the residual of a window. Rows of its last colour have no residual.
+/// Adds the restriction of the residual of a window. Rows of its last colour have no residual, unless truncation has coupled them
+/// to others of that colour, which were relaxed after them.
 fn restrict_residual(
     level: &Level,
     values: &Values,
@@ -295,26 +294,51 @@ fn restrict_residual(
 ) {
     let Level { pattern, coloring, runs, transfer, .. } = level;
     let mut products = [0.0; LONGEST];
-    for color in 0..coloring.colors() - 1 {
-        for run in runs.of(window, color) {
-            let off = values.off_diagonal_products((pattern, runs), run, x, &mut products);
-            for (i, off) in runs.rows(run).zip(off) {
-                transfer.spread(i, b[i] - values.diagonal[i] * x[i] - off, coarse);
-            }
+    let mut restrict = |run: usize| {
+        let off = values.off_diagonal_products((pattern, runs), run, x, &mut products);
+        for (i, off) in runs.rows(run).zip(off) {
+            transfer.spread(i, b[i] - values.diagonal[i] * x[i] - off, coarse);
         }
-    }
+    };
+    let last = coloring.colors() - 1;
+    (0..last).flat_map(|color| runs.of(window, color)).for_each(&mut restrict);
+    runs.of(window, last).filter(|&run| values.is_replaced(run)).for_each(&mut restrict);
 }
 
 /// Gauss-Seidel for the rows of some runs.
 fn relax(level: &Level, values: &Values, b: &[f64], runs: Range<usize>, x: &mut [f64]) {
     let mut products = [0.0; LONGEST];
     for run in runs {
+        if values.is_replaced(run) {
+            relax_in_turn(level, values, b, run, x);
+            continue;
+        }
         let off = values.off_diagonal_products((&level.pattern, &level.runs), run, x, &mut products);
         let rows = level.runs.rows(run);
         let (b, inverse) = (&b[rows.clone()], &values.inverse[rows.clone()]);
         for (((x, b), off), inverse) in x[rows].iter_mut().zip(b).zip(off).zip(inverse) {
             *x = (b - off) * inverse;
         }
+    }
+}
+
+/// Likewise where `x` is zero but for rows of this colour, which are not coupled unless truncation has done so.
+fn relax_from_zero(level: &Level, values: &Values, b: &[f64], runs: Range<usize>, x: &mut [f64]) {
+    for run in runs {
+        if values.is_replaced(run) {
+            relax_in_turn(level, values, b, run, x);
+            continue;
+        }
+        for i in level.runs.rows(run) {
+            x[i] = b[i] * values.inverse[i];
+        }
+    }
+}
+
+/// Likewise for rows that may be coupled to each other: each after the one before.
+fn relax_in_turn(level: &Level, values: &Values, b: &[f64], run: usize, x: &mut [f64]) {
+    for i in level.runs.rows(run) {
+        x[i] = (b[i] - values.off_diagonal_product(&level.pattern, i, x)) * values.inverse[i];
     }
 }
 

@@ -63,7 +63,7 @@ impl<'h> Truncation<'h> {
                 } else {
                     sum.gather((&fine.pattern, &above[0]), &fine.transfer, a as usize, |_| false);
                 }
-                below[l].set_row(&level.pattern, a as usize, sum);
+                below[l].set_row(&level.pattern, a as usize, |column| sum.at(column));
             }
         }
         !rows.is_empty()

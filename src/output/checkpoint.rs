@@ -5,11 +5,17 @@ use std::io::{self, Read, Seek, Write};
 use zip::ZipArchive;
 
 use crate::formats::npz::{NpzWriter, read_vector};
+use crate::qp::Status;
 use crate::solver::Statistics;
 use crate::study::Checkpoint;
 
 /// The solver of which nothing is known.
 const UNKNOWN: &str = "unknown";
+
+/// What is known of a solution when nothing is.
+fn unknown() -> Statistics {
+    Statistics { status: Status::Unknown, ..Statistics::of(UNKNOWN) }
+}
 
 /// Writes a checkpoint. Arrays: `marked`, the marked triangles of all refinements one after the other, `marked_counts`, their
 /// numbers; `u1`, `u2`, `lambda` over the vertices of the last mesh; `tolerance`; `statistics`, the bytes of a JSON object.
@@ -60,7 +66,7 @@ pub fn read_checkpoint(input: impl Read + Seek) -> io::Result<Checkpoint> {
     // Infinite residuals are no JSON: then it is not known how the solution was found.
     let statistics = read_vector::<u8>(&mut archive, "statistics");
     let statistics = statistics.ok().and_then(|text| serde_json::from_slice(&text).ok());
-    let statistics = statistics.unwrap_or_else(|| Statistics::of(UNKNOWN));
+    let statistics = statistics.unwrap_or_else(unknown);
     Ok(Checkpoint { marked, displacement, lambda, tolerance, statistics })
 }
 
@@ -97,6 +103,18 @@ mod tests {
         assert_eq!(written(&checkpoint()), bytes, "the same bytes each time");
         let other = Checkpoint { tolerance: 1e-9, ..checkpoint() };
         assert_ne!(read_checkpoint(Cursor::new(written(&other))).unwrap(), checkpoint());
+    }
+
+    /// JSON has no infinity: such statistics are written, but cannot be read.
+    #[test]
+    fn what_is_not_known_is_not_called_solved() {
+        let statistics = Statistics { energies: vec![f64::INFINITY], ..Statistics::of("multigrid") };
+        let read = read_checkpoint(Cursor::new(written(&Checkpoint { statistics, ..checkpoint() }))).unwrap();
+        assert_eq!((read.statistics.status, read.statistics.solver.as_str()), (Status::Unknown, UNKNOWN));
+        assert_eq!(read.displacement, checkpoint().displacement, "the rest is there");
+        let known = Statistics { status: Status::Inaccurate, ..Statistics::of("multigrid") };
+        let read = read_checkpoint(Cursor::new(written(&Checkpoint { statistics: known, ..checkpoint() })));
+        assert_eq!(read.unwrap().statistics.status, Status::Inaccurate);
     }
 
     #[test]

@@ -7,8 +7,8 @@ use crate::formats::vtk::{Cells, DataArray, Location, VTK_POLYGON, write_grid};
 use crate::mesh::DualMesh;
 
 /// Writes `dual.vtu`: the cells `D_a` of the dual mesh as polygons, with cell data `lambda` (the piecewise constant
-/// `lambda_h` itself), `vertex` (the number of `a` in the mesh) and `contact` (0 or 1). The points are those of the
-/// polygons. A cell may be concave: triangulate it before VTK measures it. Binary, compressed by zlib; ParaView, PyVista
+/// `lambda_h` itself), `vertex` (the number of `a` in the mesh), `contact` (0 or 1) and `area` (`|D_a|`). The points are those of
+/// the polygons. A cell may be concave: VTK measures such cells wrongly, so integrate with `area`. Binary, compressed by zlib; ParaView, PyVista
 /// and meshio read it.
 ///
 /// # Errors
@@ -33,6 +33,7 @@ pub fn write_dual_vtu(dual: &DualMesh, solution: &ContactSolution, out: impl Wri
         DataArray::floats("lambda", at.clone().map(|a| solution.lambda()[a])),
         DataArray::integers("vertex", at.clone()),
         DataArray::flags("contact", at.map(|a| solution.contact()[a])),
+        DataArray::floats("area", (0..dual.vertices().len()).map(|k| dual.area(k))),
     ];
     write_grid(out, &points, &polygons, &[(Location::Cells, &data)])
 }
@@ -90,6 +91,8 @@ mod tests {
         let contact: Vec<f64> = array("contact").into_iter().map(f64::from).collect();
         let integral = |values: &[f64]| areas.iter().zip(values).map(|(area, v)| area * v).sum::<f64>();
         let lambda = floats(&array("lambda"));
+        let written = floats(&array("area"));
+        assert!(areas.iter().zip(&written).all(|(area, written)| (area - written).abs() < ROUNDING));
         assert!((integral(&contact) - solution.contact_area()).abs() < ROUNDING);
         assert!((integral(&lambda) - solution.total_force()).abs() < ROUNDING);
         let shifted: Vec<f64> = lambda[1..].to_vec();

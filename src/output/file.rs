@@ -37,12 +37,20 @@ pub fn write_atomically(
 pub struct FileSet {
     folder: PathBuf,
     written: Vec<(NamedTempFile, PathBuf)>,
+    /// Names of which those that are not written go.
+    replaced: Vec<PathBuf>,
 }
 
 impl FileSet {
     /// No files yet, of an existing folder.
     pub fn new(folder: &Path) -> Self {
-        Self { folder: folder.into(), written: Vec::new() }
+        Self::replacing(folder, &[])
+    }
+
+    /// No files yet, of an existing folder. They come in place of these, of an earlier set: what is not written again goes.
+    pub fn replacing(folder: &Path, names: &[&str]) -> Self {
+        let replaced = names.iter().map(|name| folder.join(name)).collect();
+        Self { folder: folder.into(), written: Vec::new(), replaced }
     }
 
     /// Has `write` fill the file that will be called `name`.
@@ -72,6 +80,8 @@ impl FileSet {
         if let [_, .., (_, seal)] = self.written.as_slice() {
             remove(seal)?;
         }
+        let is_written = |path: &PathBuf| self.written.iter().any(|(_, written)| written == path);
+        self.replaced.iter().filter(|path| !is_written(path)).try_for_each(|path| remove(path))?;
         self.written
             .into_iter()
             .try_for_each(|(file, path)| file.persist(path).map(|_| ()).map_err(|error| error.error))
@@ -196,6 +206,23 @@ mod tests {
         std::fs::create_dir(folder.path().join("a")).unwrap();
         assert!(write("newer", false).is_err());
         assert_eq!(names(folder.path()), ["a"]);
+    }
+
+    #[test]
+    fn a_set_takes_the_place_of_another_one_and_of_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let publish = |names: &[&str]| {
+            let mut files = FileSet::replacing(folder.path(), &["a", "b", "seal"]);
+            names.iter().for_each(|name| files.write(Path::new(name), |_| Ok(())).unwrap());
+            files.publish().unwrap();
+        };
+        std::fs::write(folder.path().join("notes"), "").unwrap();
+        publish(&["a", "b", "seal"]);
+        assert_eq!(names(folder.path()), ["a", "b", "notes", "seal"]);
+        publish(&["a", "seal"]);
+        assert_eq!(names(folder.path()), ["a", "notes", "seal"]);
+        publish(&["seal"]);
+        assert_eq!(names(folder.path()), ["notes", "seal"]);
     }
 
     #[test]

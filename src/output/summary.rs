@@ -4,9 +4,10 @@ use std::io::{self, Write};
 
 use serde::Serialize;
 
-use crate::action::{ContactSolution, Rejected, Residuals};
+use crate::action::{ContactSolution, CutOff, Rejected, Residuals};
 use crate::discretization::Discretization;
 use crate::estimate::{BoundParts, ErrorBound};
+use crate::formats::gmsh::PhysicalGroup;
 use crate::solver::Statistics;
 
 /// The contents of `summary.json`, field by field. Other programs read the names.
@@ -46,24 +47,41 @@ pub struct Summary {
     pub polish: Option<PolishSummary>,
     /// `J(u_h)`; absent when not certified.
     pub energy: Option<f64>,
-    /// Vertices in contact; absent when not certified.
+    /// Interior vertices in contact, with a force or without; absent when not certified.
     pub contact_vertices: Option<usize>,
-    /// The area of their dual cells; absent when not certified.
+    /// Those of them that are pressed, by `lambda_a > 0`; absent when not certified.
+    pub pressed_vertices: Option<usize>,
+    /// The area of the dual cells of the vertices in contact, the paper's; absent when not certified.
     pub contact_area: Option<f64>,
-    /// `int lambda_h`; absent when not certified.
+    /// Likewise, with the cells of the boundary around which the membranes touch; absent when not certified.
+    pub contact_area_extended: Option<f64>,
+    /// `int lambda_h`, the paper's; absent when not certified.
     pub total_force: Option<f64>,
-    /// A guaranteed bound of the energy error; absent when not certified.
+    /// Likewise, with the action continued to these cells of the boundary; absent when not certified.
+    pub total_force_extended: Option<f64>,
+    /// What was cut off to make the solution exactly complementary, relative; absent when not certified.
+    pub cut_off: Option<CutOff>,
+    /// A bound of the energy error, guaranteed up to the quadrature of the loads; absent when not certified.
     pub error_bound: Option<f64>,
     /// The bound relative to the energy norm of the exact solution; absent also when it is too large to know that.
     pub relative_error_bound: Option<f64>,
     /// What the bound consists of; absent when not certified.
     pub error_parts: Option<BoundParts>,
+    /// By how much two quadrature rules differ in each load, in the same norm as the bound: zero for constant loads, and where it is
+    /// above the bound, that does not hold; absent when not certified.
+    pub quadrature_difference: Option<[f64; 2]>,
+    /// What makes the bound doubtful, in a sentence each.
+    pub warnings: Vec<String>,
     /// The energy norm of the solution; absent when not certified.
     pub energy_norm: Option<f64>,
     /// The relative residuals; absent when there was nothing to measure.
     pub residuals: Option<ResidualSummary>,
-    /// The largest of them beyond the rounding of the terms that cancel there: what is held against the tolerance.
+    /// The largest of them beyond the rounding of the terms that cancel there: what is compared with the tolerance.
     pub residual_beyond_rounding: Option<f64>,
+    /// The physical groups of the mesh file that the run has not used: names, or what they consist of and their numbers.
+    pub unused_groups: Vec<String>,
+    /// Files that were left out, because the time was over.
+    pub left_out: Vec<&'static str>,
     /// Where the time went.
     pub seconds: Seconds,
 }
@@ -147,16 +165,29 @@ impl Summary {
             polish: polish(statistics),
             energy: solution.map(ContactSolution::energy),
             contact_vertices: solution.map(|s| s.contact().iter().filter(|&&contact| contact).count()),
+            pressed_vertices: solution.map(|s| s.lambda().iter().filter(|&&lambda| lambda > 0.0).count()),
             contact_area: solution.map(ContactSolution::contact_area),
+            contact_area_extended: solution.map(ContactSolution::contact_area_extended),
             total_force: solution.map(ContactSolution::total_force),
+            total_force_extended: solution.map(ContactSolution::total_force_extended),
+            cut_off: solution.map(ContactSolution::cut_off),
             error_bound: bound.map(|bound| bound.total),
             relative_error_bound: bound.and_then(ErrorBound::relative),
             error_parts: bound.map(|bound| bound.parts),
+            quadrature_difference: bound.map(|bound| bound.quadrature_difference),
+            warnings: warnings(bound),
             energy_norm: bound.map(|bound| bound.energy_norm),
             residuals: residuals.map(ResidualSummary::from),
             residual_beyond_rounding: residuals.map(Residuals::beyond_rounding),
+            unused_groups: Vec::new(),
+            left_out: Vec::new(),
             seconds,
         }
+    }
+
+    /// The same with the physical groups that were not used.
+    pub fn with_unused_groups(self, groups: &[PhysicalGroup]) -> Self {
+        Self { unused_groups: groups.iter().map(PhysicalGroup::to_string).collect(), ..self }
     }
 
     /// Writes it as JSON.
@@ -167,6 +198,10 @@ impl Summary {
         serde_json::to_writer_pretty(&mut out, self)?;
         writeln!(out)
     }
+}
+
+fn warnings(bound: Option<&ErrorBound>) -> Vec<String> {
+    bound.iter().flat_map(|bound| &bound.warnings).map(ToString::to_string).collect()
 }
 
 fn polish(statistics: &Statistics) -> Option<PolishSummary> {

@@ -36,7 +36,7 @@ const FORCE: Frame = Frame { left: 240.0, top: 1154.0, width: 1520.0, height: 96
 pub fn render(picture: &Picture) -> Result<Drawing, PictureError> {
     let scene = Scene::new(picture)?;
     let map = Map::new(&scene, MAP);
-    let cut = Cut::through(&scene, &map);
+    let cut = cut(&scene, &map);
     let section = Section::new(&scene, cut, MEMBRANES.width as usize * FINE);
     let mut canvas = Canvas::new(SIZE);
     heading(&mut canvas, picture.title);
@@ -44,6 +44,11 @@ pub fn render(picture: &Picture) -> Result<Drawing, PictureError> {
     map.draw(&mut canvas, &scene, &cut);
     SectionPlot::new(&scene, &section, [MEMBRANES, FORCE]).draw(&mut canvas);
     Ok(Drawing::new(canvas))
+}
+
+/// The line A-A.
+fn cut(scene: &Scene, map: &Map) -> Cut {
+    Cut::through(scene, |axis| map.profile(axis, |vertex| !scene.touching || scene.in_contact(vertex)))
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@
 
 mod annulus;
 mod decoupled;
+mod description;
 mod disk;
 mod jet;
 mod l_shape;
@@ -18,17 +19,17 @@ mod tests;
 
 use std::collections::BTreeMap;
 use std::fmt;
-use std::sync::Arc;
 
 pub use parameter::{CaseError, Parameter, Range};
 pub use solution::ExactSolution;
 
 use crate::text::{excerpt, nearest};
-use decoupled::Decoupled;
+use description::Description;
 use parameter::{Values, listed};
 
 /// A problem with a known solution. The name in a case file stands in brackets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Case {
     /// Unit disk, constant data, contact in a smaller disk (`disk`).
     Disk,
@@ -48,16 +49,6 @@ pub enum Case {
     FullContact,
     /// Unit square, everywhere in contact without any action (`biactive`).
     Biactive,
-}
-
-/// What a case file says about its case.
-struct Description {
-    name: &'static str,
-    title: &'static str,
-    letter: &'static str,
-    formulas: &'static [&'static str],
-    parameters: &'static [Parameter],
-    build: fn(&Values) -> Result<Arc<dyn Decoupled>, CaseError>,
 }
 
 impl Case {

@@ -6,6 +6,7 @@ use crate::geometry::ring_area;
 
 /// The shape on which the two membranes are stretched. Lengths are in the unit of the coordinates.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum Domain {
     /// `(lower[0], upper[0]) x (lower[1], upper[1])`.
     Rectangle {
@@ -28,7 +29,7 @@ pub enum Domain {
     },
     /// A polygon with polygonal holes.
     Polygon {
-        /// The outer boundary, in either orientation, first vertex not repeated.
+        /// The outer boundary, in either orientation; the last vertex may repeat the first.
         vertices: Vec<[f64; 2]>,
         /// The boundaries of the holes, likewise.
         holes: Vec<Vec<[f64; 2]>>,

@@ -1,15 +1,15 @@
 //! What a QP solver is to this crate.
 
-use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use super::QpProblem;
+use super::problem::QpProblem;
+use super::time_limit::TimeLimit;
 
 /// A solver of [`QpProblem`]s. Implement it to plug in a solver of your own: see `examples/custom_backend.rs`.
 ///
 /// The problem arrives in units in which `x` and `P x + q` have size about 1, so that one absolute tolerance fits. The
 /// answer is judged by residuals recomputed elsewhere, never by the status.
-pub trait QpBackend {
+pub trait QpBackend: Send {
     /// The name in summaries and messages.
     fn name(&self) -> &str;
 
@@ -27,8 +27,8 @@ pub struct QpOptions {
     pub tolerance: f64,
     /// Where to stop at the latest; `None`: the backend's own limit.
     pub max_iterations: Option<usize>,
-    /// Seconds after which to stop; `None`: no limit.
-    pub time_limit: Option<f64>,
+    /// When to stop at the latest; `None`: no limit.
+    pub time_limit: Option<TimeLimit>,
     /// A guess `(x, y)`, for backends that can use one.
     pub warm_start: Option<(Vec<f64>, Vec<f64>)>,
 }
@@ -57,7 +57,9 @@ pub struct QpSolution {
 }
 
 /// Why a solver stopped, in its own view. Whether the result is accepted is decided by residuals.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub enum Status {
     /// It reached the tolerance.
     Solved,

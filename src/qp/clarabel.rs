@@ -6,7 +6,7 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 use sprs::CsMat;
 
-use super::{BackendError, QpBackend, QpOptions, QpProblem, QpSolution, Status};
+use super::{BackendError, QpBackend, QpOptions, QpProblem, QpSolution, Status, TimeLimit};
 
 /// Clarabel: `minimise 1/2 x'P x + q'x subject to A x + s = b, s in a cone`, dual `z`. Our `A x >= b` is its
 /// `-A x + s = -b, s >= 0`, with `z = y`.
@@ -55,7 +55,7 @@ fn settings(options: &QpOptions, constraints: usize) -> DefaultSettings<f64> {
     DefaultSettings {
         verbose: false,
         max_iter: options.max_iterations.map_or(MAX_ITERATIONS, |limit| limit.try_into().unwrap_or(u32::MAX)),
-        time_limit: options.time_limit.unwrap_or(f64::INFINITY),
+        time_limit: options.time_limit.map_or(f64::INFINITY, TimeLimit::seconds),
         tol_gap_abs: options.tolerance * (MEAN_PRODUCT * constraints as f64).max(1.0),
         tol_gap_rel: 0.0,
         tol_feas: options.tolerance,

@@ -9,8 +9,10 @@ use crate::discretization::Discretization;
 ///
 /// ```text
 /// P = blkdiag(mu1 K_II, mu2 K_II)       q = (mu1 K_IB g_B - F_1, -F_2)
-/// A = [I, -I]                           b = 0
+/// A = [I, -I]                           b = 0         c = mu1/2 g_B'K_BB g_B - F_1B'g_B
 /// ```
+///
+/// With the constant `c`, the objective is the energy (2.9).
 ///
 /// The multiplier of row `a` is `y_a = lambda_a |D_a|`, a force. Boundary values are eliminated, not kept as equality
 /// rows: `P` stays positive definite, and every solver does less work.
@@ -22,6 +24,7 @@ pub fn contact_qp(d: &Discretization) -> QpProblem {
     let scales = d.scales();
     QpProblem::new(block_diagonal_upper(d.interior_stiffness(), d.tension()), q, gap_matrix(n), vec![0.0; n])
         .and_then(|qp| qp.with_scales(scales.displacement, scales.force_density * scales.dual_area))
+        .and_then(|qp| qp.with_constant(energy_of_lift(d)))
         .expect("a discretization makes a valid quadratic program")
 }
 
@@ -29,6 +32,13 @@ pub fn contact_qp(d: &Discretization) -> QpProblem {
 fn linear_term(d: &Discretization, i: usize) -> Vec<f64> {
     let lift = |a: usize| if i == 0 { d.height()[a] } else { 0.0 };
     d.imbalance(i, &d.extend(&vec![0.0; d.interior().len()], lift))
+}
+
+/// The energy of `g_h` for membrane 1 and zero for membrane 2: that of `x = 0`.
+fn energy_of_lift(d: &Discretization) -> f64 {
+    let g = d.height();
+    let at = |a: usize| (0.5 * d.tension()[0] * d.stiffness_row(a, |b| g[b]) - d.load()[0][a]) * g[a];
+    (0..g.len()).filter(|&a| g[a] != 0.0).map(at).sum()
 }
 
 /// The upper triangle of `blkdiag(mu1 K, mu2 K)` in compressed columns; `K` is symmetric, so its rows are its columns.

@@ -8,12 +8,20 @@ use super::QpProblem;
 use crate::discretization::Discretization;
 use crate::formats::matrix_market::{write_array, write_coordinates};
 use crate::formats::npz::NpzWriter;
+use crate::formats::qps::Qps;
 
 /// Writes the program and the mesh behind it as a numpy archive, which scipy loads without further help.
 ///
-/// Arrays: for `M` in `P` (full, symmetric) and `A`, in compressed columns, `M_data`, `M_indices`, `M_indptr`,
-/// `M_shape`; `q`, `b`; `interior` (vertex of each unknown: unknown `k` of membrane 1 is `x[k]`, of membrane 2
-/// `x[n + k]`), `dual_area` (`|D_a|` of each unknown, so that `y_a = lambda_a |D_a|`), `points`, `triangles`.
+/// | key | shape | |
+/// |---|---|---|
+/// | `P_data`, `P_indices`, `P_indptr`, `P_shape` | | `P`, full and symmetric, in compressed columns: the arguments of `scipy.sparse.csc_matrix` |
+/// | `A_data`, `A_indices`, `A_indptr`, `A_shape` | | `A` likewise |
+/// | `q`, `b` | `2n`, `n` | the vectors of `1/2 x'P x + q'x + constant` and `A x >= b` |
+/// | `constant` | | with it, the optimum is the energy in `summary.json` |
+/// | `displacement_scale`, `force_scale` | | the sizes of `x` and of `P x + q`, against which residuals are measured: of [`Scales`](crate::discretization::Scales), `displacement` and `force_density * dual_area` |
+/// | `interior` | `n` | the vertex of each unknown: that of membrane 1 is `x[k]`, of membrane 2 `x[n + k]` |
+/// | `dual_area` | `n` | the areas `\|D_a\|`, so that `y_a = lambda_a \|D_a\|` |
+/// | `points`, `triangles` | `vertices x 2`, `triangles x 3` | the mesh |
 ///
 /// # Errors
 /// When writing fails.
@@ -23,6 +31,9 @@ pub fn write_npz(d: &Discretization, qp: &QpProblem, out: impl Write + Seek) -> 
     write_matrix(&mut archive, "A", qp.a())?;
     archive.floats("q", qp.q(), &[qp.q().len()])?;
     archive.floats("b", qp.b(), &[qp.b().len()])?;
+    archive.floats("constant", &[qp.constant()], &[])?;
+    archive.floats("displacement_scale", &[qp.primal_scale()], &[])?;
+    archive.floats("force_scale", &[qp.dual_scale()], &[])?;
     archive.integers("interior", d.interior(), &[d.interior().len()])?;
     let dual_area: Vec<f64> = d.interior().iter().map(|&a| d.dual_area()[a]).collect();
     archive.floats("dual_area", &dual_area, &[dual_area.len()])?;
@@ -61,6 +72,7 @@ fn strict_upper(upper: &CsMat<f64>) -> CsMat<f64> {
 
 /// A part of the program that has a MatrixMarket file of its own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum QpPart {
     /// `P`, symmetric.
     P,
@@ -70,11 +82,13 @@ pub enum QpPart {
     Q,
     /// `b`, an array.
     B,
+    /// The constant of the objective, an array of one number.
+    Constant,
 }
 
 impl QpPart {
     /// Every part.
-    pub const ALL: [Self; 4] = [Self::P, Self::A, Self::Q, Self::B];
+    pub const ALL: [Self; 5] = [Self::P, Self::A, Self::Q, Self::B, Self::Constant];
 
     /// Its letter in the formulas.
     pub fn letter(self) -> char {
@@ -83,6 +97,7 @@ impl QpPart {
             Self::A => 'A',
             Self::Q => 'q',
             Self::B => 'b',
+            Self::Constant => 'c',
         }
     }
 }
@@ -97,38 +112,19 @@ pub fn write_matrix_market(qp: &QpProblem, part: QpPart, mut out: impl Write) ->
         QpPart::A => write_coordinates(qp.a(), false, &mut out),
         QpPart::Q => write_array(qp.q(), &mut out),
         QpPart::B => write_array(qp.b(), &mut out),
+        QpPart::Constant => write_array(&[qp.constant()], &mut out),
     }?;
     out.flush()
 }
 
-/// Writes the program in QPS form (free format; Maros, Meszaros, Optim. Methods Softw. 11 (1999) 671): variables `x1`,
-/// `x2`, ... without bounds, rows `c1`, `c2`, ... of kind `G`, one triangle of `P` under `QUADOBJ`.
+/// Writes the program in QPS form: variables `x1`, `x2`, ... without bounds, rows `c1`, `c2`, ... of kind `G`, the constant as the
+/// negative right-hand side of the objective `obj`.
 ///
 /// # Errors
 /// When writing fails.
-pub fn write_qps(qp: &QpProblem, mut out: impl Write) -> io::Result<()> {
-    writeln!(out, "NAME contact\nROWS\n N obj")?;
-    (1..=qp.b().len()).try_for_each(|row| writeln!(out, " G c{row}"))?;
-    writeln!(out, "COLUMNS")?;
-    for (column, (entries, q)) in qp.a().outer_iterator().zip(qp.q()).enumerate() {
-        writeln!(out, " x{} obj {q:e}", column + 1)?;
-        entries
-            .iter()
-            .try_for_each(|(row, value)| writeln!(out, " x{} c{} {value:e}", column + 1, row + 1))?;
-    }
-    writeln!(out, "RHS")?;
-    let bounds = qp.b().iter().enumerate().filter(|(_, b)| **b != 0.0);
-    for (row, b) in bounds {
-        writeln!(out, " rhs c{} {b:e}", row + 1)?;
-    }
-    writeln!(out, "BOUNDS")?;
-    (1..=qp.q().len()).try_for_each(|column| writeln!(out, " FR bnd x{column}"))?;
-    writeln!(out, "QUADOBJ")?;
-    for (value, (row, column)) in qp.p_upper().iter() {
-        writeln!(out, " x{} x{} {value:e}", row + 1, column + 1)?;
-    }
-    writeln!(out, "ENDATA")?;
-    out.flush()
+pub fn write_qps(qp: &QpProblem, out: impl Write) -> io::Result<()> {
+    let program = Qps { p_upper: qp.p_upper(), q: qp.q(), a: qp.a(), b: qp.b(), constant: qp.constant() };
+    program.write("contact", out)
 }
 
 #[cfg(test)]

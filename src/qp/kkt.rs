@@ -1,6 +1,7 @@
 //! The optimality conditions, recomputed.
 
 use super::QpProblem;
+use crate::numeric::largest;
 
 /// How far a pair `(x, y)` is from optimal: componentwise maxima, in units of the problem's scales (`P x + q` and `y` of
 /// [`dual_scale`](QpProblem::dual_scale), `A x` of [`primal_scale`](QpProblem::primal_scale)).
@@ -40,13 +41,8 @@ impl KktResiduals {
 
     /// The largest of the four.
     pub fn worst(&self) -> f64 {
-        largest([self.stationarity, self.primal, self.dual_sign, self.complementarity].into_iter())
+        largest([self.stationarity, self.primal, self.dual_sign, self.complementarity])
     }
-}
-
-/// The largest value, at least zero; infinite as soon as one is NaN.
-pub(crate) fn largest(values: impl Iterator<Item = f64>) -> f64 {
-    values.fold(0.0, |largest, value| if value.is_nan() { f64::INFINITY } else { largest.max(value) })
 }
 
 #[cfg(test)]

@@ -1,11 +1,11 @@
 //! The operator-splitting solver OSQP (Stellato et al., Math. Prog. Comp. 12 (2020) 637).
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use osqp::{CscMatrix, Problem, Settings, Solution, Status as OsqpStatus};
 use sprs::CsMat;
 
-use super::{BackendError, QpBackend, QpOptions, QpProblem, QpSolution, Status};
+use super::{BackendError, QpBackend, QpOptions, QpProblem, QpSolution, Status, TimeLimit};
 
 /// OSQP: `minimise 1/2 x'P x + q'x subject to l <= A x <= u`, dual `<= 0` at an active lower bound: `y` is its negative.
 ///
@@ -64,7 +64,7 @@ fn settings(options: &QpOptions) -> Settings {
         .max_iter(limit as u32)
         .adaptive_rho_interval(Some(ADAPT_EVERY))
         .polish(true)
-        .time_limit(options.time_limit.map(Duration::from_secs_f64))
+        .time_limit(options.time_limit.map(TimeLimit::duration))
 }
 
 fn csc(matrix: &CsMat<f64>) -> CscMatrix<'_> {

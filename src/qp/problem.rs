@@ -3,7 +3,7 @@
 use sprs::CsMat;
 use thiserror::Error;
 
-/// `minimise 1/2 x'P x + q'x subject to A x >= b`, with `P` symmetric positive semidefinite.
+/// `minimise 1/2 x'P x + q'x + c subject to A x >= b`, with `P` symmetric positive semidefinite.
 ///
 /// Shapes: `P` is `variables x variables`, of which the upper triangle is stored; `A` is `constraints x variables`; both
 /// in compressed columns.
@@ -13,6 +13,7 @@ pub struct QpProblem {
     q: Vec<f64>,
     a: CsMat<f64>,
     b: Vec<f64>,
+    constant: f64,
     primal_scale: f64,
     dual_scale: f64,
 }
@@ -49,7 +50,7 @@ impl QpProblem {
                 }
             }
         }
-        Ok(Self { p_upper, q, a, b, primal_scale: 1.0, dual_scale: 1.0 })
+        Ok(Self { p_upper, q, a, b, constant: 0.0, primal_scale: 1.0, dual_scale: 1.0 })
     }
 
     /// States the typical sizes of `x` and of `P x + q`: residuals are measured against them, and backends get the
@@ -64,6 +65,16 @@ impl QpProblem {
             }
         }
         (self.primal_scale, self.dual_scale) = (primal, dual);
+        Ok(self)
+    }
+
+    /// States the constant `c` of the objective, zero without this: it changes the optimum's value and nothing else.
+    ///
+    /// # Errors
+    /// [`QpError::NotFinite`].
+    pub fn with_constant(mut self, constant: f64) -> Result<Self, QpError> {
+        check_finite("the constant", &[constant])?;
+        self.constant = constant;
         Ok(self)
     }
 
@@ -87,6 +98,11 @@ impl QpProblem {
         &self.b
     }
 
+    /// The constant of the objective.
+    pub fn constant(&self) -> f64 {
+        self.constant
+    }
+
     /// The typical size of `x`.
     pub fn primal_scale(&self) -> f64 {
         self.primal_scale
@@ -106,13 +122,18 @@ impl QpProblem {
             q: self.q.iter().map(|q| q / dual).collect(),
             a: self.a.clone(),
             b: self.b.iter().map(|b| b / primal).collect(),
+            constant: self.constant / primal / dual,
             primal_scale: 1.0,
             dual_scale: 1.0,
         }
     }
 
     /// `P x`.
+    ///
+    /// # Panics
+    /// When `x` has not one entry for each variable.
     pub fn p_times(&self, x: &[f64]) -> Vec<f64> {
+        assert_eq!(x.len(), self.q.len(), "one entry for each variable");
         let mut product = vec![0.0; x.len()];
         for (column, entries) in self.p_upper.outer_iterator().enumerate() {
             for (row, &value) in entries.iter() {
@@ -126,7 +147,11 @@ impl QpProblem {
     }
 
     /// `A x`.
+    ///
+    /// # Panics
+    /// When `x` has not one entry for each variable.
     pub fn a_times(&self, x: &[f64]) -> Vec<f64> {
+        assert_eq!(x.len(), self.q.len(), "one entry for each variable");
         let mut product = vec![0.0; self.b.len()];
         for (entries, x) in self.a.outer_iterator().zip(x) {
             for (row, value) in entries.iter() {
@@ -137,17 +162,25 @@ impl QpProblem {
     }
 
     /// `A'y`.
+    ///
+    /// # Panics
+    /// When `y` has not one entry for each constraint.
     pub fn a_transposed_times(&self, y: &[f64]) -> Vec<f64> {
+        assert_eq!(y.len(), self.b.len(), "one entry for each constraint");
         self.a
             .outer_iterator()
             .map(|entries| entries.iter().map(|(row, value)| value * y[row]).sum())
             .collect()
     }
 
-    /// `1/2 x'P x + q'x`.
+    /// `1/2 x'P x + q'x + c`.
+    ///
+    /// # Panics
+    /// When `x` has not one entry for each variable.
     pub fn objective(&self, x: &[f64]) -> f64 {
         let px = self.p_times(x);
-        px.iter().zip(&self.q).zip(x).map(|((px, q), x)| (0.5 * px + q) * x).sum()
+        let sum: f64 = px.iter().zip(&self.q).zip(x).map(|((px, q), x)| (0.5 * px + q) * x).sum();
+        sum + self.constant
     }
 }
 
@@ -164,6 +197,7 @@ fn check_finite(name: &'static str, values: &[f64]) -> Result<(), QpError> {
 
 /// Why data do not make a quadratic program.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum QpError {
     /// A matrix of the wrong shape.
     #[error("{name} is {} x {}, but q and b ask for {} x {}", found.0, found.1, expected.0, expected.1)]
@@ -244,7 +278,8 @@ mod tests {
             (QpProblem::new(p(), vec![1.0], a(), b.clone()), "P is 2 x 2"),
             (QpProblem::new(p(), q.clone(), a(), vec![]), "A is 1 x 2"),
             (QpProblem::new(p(), q.clone(), a(), vec![f64::INFINITY]), "b holds inf"),
-            (QpProblem::new(p(), q, a(), b).unwrap().with_scales(0.0, 1.0), "scale"),
+            (QpProblem::new(p(), q.clone(), a(), b.clone()).unwrap().with_scales(0.0, 1.0), "scale"),
+            (QpProblem::new(p(), q, a(), b).unwrap().with_constant(f64::NAN), "the constant holds NaN"),
         ];
         for (result, word) in refused {
             let message = result.expect_err(word).to_string();
@@ -262,5 +297,27 @@ mod tests {
         assert_eq!(qp.a_times(&x), [-5.0]);
         assert_eq!(qp.a_transposed_times(&[2.0]), [2.0, -6.0]);
         assert_eq!(qp.objective(&x), 0.5 * (4.0 + 18.0) + 1.0 - 2.0);
+        let raised = qp.with_constant(0.5).unwrap().with_scales(2.0, 4.0).unwrap();
+        assert_eq!(raised.objective(&x), 0.5 * (4.0 + 18.0) + 1.0 - 2.0 + 0.5);
+        assert_eq!(8.0 * raised.nondimensional().objective(&[0.5, 1.0]), raised.objective(&x));
+    }
+
+    #[test]
+    fn vectors_of_another_length_are_refused() {
+        let p = matrix((2, 2), &[(0, 0, 2.0), (1, 1, 4.0)]);
+        let a = matrix((1, 2), &[(0, 0, 1.0), (0, 1, -3.0)]);
+        let qp = QpProblem::new(p, vec![1.0, -1.0], a, vec![0.0]).unwrap();
+        let products: [fn(&QpProblem, &[f64]); 4] = [
+            |qp, x| drop(qp.a_times(x)),
+            |qp, x| drop(qp.p_times(x)),
+            |qp, x| assert!(qp.objective(x).is_finite()),
+            |qp, x| drop(qp.a_transposed_times(&x[1..])),
+        ];
+        for product in products {
+            let is_refused = |length: usize| {
+                std::panic::catch_unwind(|| product(&qp, &[1.0, 2.0, 3.0][..length])).is_err()
+            };
+            assert_eq!([1, 2, 3].map(is_refused), [true, false, true]);
+        }
     }
 }

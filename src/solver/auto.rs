@@ -1,8 +1,9 @@
-//! The choice between our own solvers.
+//! The choice between the built-in solvers.
 
 use std::time::Instant;
 
-use super::{ActiveSet, Candidate, ContactSolver, Multigrid, SolverError, SolverOptions};
+use super::multigrid::PreparedMultigrid;
+use super::{ActiveSet, Candidate, ContactSolver, Multigrid, PreparedSolver, SolverError, SolverOptions};
 use crate::discretization::Discretization;
 use crate::qp::Status;
 
@@ -23,6 +24,29 @@ impl ContactSolver for Auto {
     }
 
     fn solve(&mut self, d: &Discretization, options: &SolverOptions) -> Result<Candidate, SolverError> {
+        PreparedAuto::new(d).solve(options)
+    }
+
+    fn prepare<'s>(&'s mut self, d: &'s Discretization) -> Box<dyn PreparedSolver + 's> {
+        Box::new(PreparedAuto::new(d))
+    }
+}
+
+/// The choice for one discretization. A multigrid that has stalled is not tried again.
+struct PreparedAuto<'d> {
+    d: &'d Discretization,
+    multigrid: Option<PreparedMultigrid<'d>>,
+}
+
+impl<'d> PreparedAuto<'d> {
+    fn new(d: &'d Discretization) -> Self {
+        Self { d, multigrid: Some(PreparedMultigrid::new(d)) }
+    }
+}
+
+impl PreparedSolver for PreparedAuto<'_> {
+    fn solve(&mut self, options: &SolverOptions) -> Result<Candidate, SolverError> {
+        let d = self.d;
         let unknowns = d.interior().len();
         let refinements = d.mesh().ancestry().len();
         let (small, hierarchy) = match refinements {
@@ -33,25 +57,32 @@ impl ContactSolver for Auto {
         let (mut candidate, size) = if unknowns <= small {
             (ActiveSet.solve(d, options)?, "few")
         } else {
-            (multigrid_or_active_set(d, options)?, "many")
+            (self.multigrid_or_active_set(options)?, "many")
         };
-        let solver = &candidate.statistics.solver;
-        let stalled = if size == "many" && *solver != Multigrid.name() { "; multigrid stalled" } else { "" };
+        let stalled = if size == "many" && self.multigrid.is_none() { "; multigrid stalled" } else { "" };
         let reason = format!("by auto: {size} unknowns ({unknowns} a membrane), {hierarchy}{stalled}");
         candidate.statistics.choice = Some(reason);
         Ok(candidate)
     }
 }
 
-/// Multigrid, and the active set method in the time that is left where it stalls: that needs no levels to be good.
-fn multigrid_or_active_set(d: &Discretization, options: &SolverOptions) -> Result<Candidate, SolverError> {
-    let start = Instant::now();
-    let candidate = Multigrid.solve(d, options)?;
-    let left = options.time_limit.map(|seconds| seconds - start.elapsed().as_secs_f64());
-    if candidate.statistics.status != Status::Stalled || left.is_some_and(|left| left <= 0.0) {
-        return Ok(candidate);
+impl PreparedAuto<'_> {
+    /// Multigrid, and the active set method in the time that is left where it stalls: that needs no levels to be good.
+    fn multigrid_or_active_set(&mut self, options: &SolverOptions) -> Result<Candidate, SolverError> {
+        let Some(multigrid) = &mut self.multigrid else { return ActiveSet.solve(self.d, options) };
+        let start = Instant::now();
+        let stalled = multigrid.solve(options)?;
+        let left = options.time_limit.map(|limit| limit.left_since(start));
+        if stalled.statistics.status != Status::Stalled || left == Some(None) {
+            return Ok(stalled);
+        }
+        self.multigrid = None;
+        let mut candidate =
+            ActiveSet.solve(self.d, &SolverOptions { time_limit: left.flatten(), ..options.clone() })?;
+        let method = format!("{} on algebraic levels", Multigrid.name());
+        candidate.statistics = candidate.statistics.after(method, stalled.statistics);
+        Ok(candidate)
     }
-    ActiveSet.solve(d, &SolverOptions { time_limit: left, ..options.clone() })
 }
 
 #[cfg(test)]
@@ -70,13 +101,19 @@ mod tests {
             let d = Discretization::new(&problem, mesh.clone()).unwrap();
             let statistics = Auto.solve(&d, &SolverOptions::default()).expect("it runs").statistics;
             assert_eq!(statistics.status, Status::Solved, "{statistics:?}");
-            (statistics.solver, statistics.choice.expect("it was left open"))
+            statistics
         };
-        let (solver, reason) = choice(0.01);
-        assert_eq!(solver, ActiveSet.name());
+        let found = choice(0.01);
+        let reason = found.choice.expect("it was left open");
+        assert_eq!(found.solver, ActiveSet.name());
         assert!(reason.ends_with("; multigrid stalled"), "{reason}");
-        let (solver, reason) = choice(1.0);
-        assert_eq!(solver, Multigrid.name());
+        let methods: Vec<&str> = found.stalled.iter().map(|stalled| stalled.method.as_str()).collect();
+        assert_eq!(methods, ["multigrid on levels of 6 refinements", "multigrid on algebraic levels"]);
+        assert!(found.stalled.iter().all(|stalled| stalled.iterations > 0));
+        let found = choice(1.0);
+        let reason = found.choice.expect("it was left open");
+        assert_eq!(found.solver, Multigrid.name());
         assert!(!reason.contains("stalled"), "{reason}");
+        assert!(found.stalled.is_empty());
     }
 }

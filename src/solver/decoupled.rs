@@ -7,7 +7,7 @@
 //!
 //! one Poisson problem and one zero-obstacle problem, and back `u1 = (s + mu2 w) / M`, `u2 = (s - mu1 w) / M`.
 
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 use crate::discretization::Discretization;
 use crate::mesh::VertexKind;

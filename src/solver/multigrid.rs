@@ -6,11 +6,15 @@ mod tests;
 use std::time::Instant;
 
 use super::decoupled::Decoupled;
-use super::{Candidate, ContactSolver, SolverError, SolverOptions, StartingPoint, Statistics};
+use super::{
+    Candidate, ContactSolver, PreparedSolver, SolverError, SolverOptions, StartingPoint, Statistics,
+};
 use crate::discretization::Discretization;
 use crate::multigrid::half::{HalfProblem, Limits, MAX_CYCLES, solve};
 use crate::multigrid::hierarchy::Hierarchy;
 use crate::qp::Status;
+
+const NAME: &str = "multigrid";
 
 /// Both halves may miss the tolerance by as much: their residuals add up in those of the membranes.
 const SHARE: f64 = 0.5;
@@ -27,60 +31,91 @@ pub struct Multigrid;
 
 impl ContactSolver for Multigrid {
     fn name(&self) -> &str {
-        "multigrid"
+        NAME
     }
 
     fn solve(&mut self, d: &Discretization, options: &SolverOptions) -> Result<Candidate, SolverError> {
-        options.check()?;
-        let start = Instant::now();
-        let candidate = self.solve_on(Hierarchy::new, d, options, start)?;
-        let has_stalled = candidate.statistics.status == Status::Stalled;
-        if has_stalled && !d.mesh().ancestry().is_empty() {
-            return self.solve_on(Hierarchy::algebraic, d, options, start);
-        }
+        PreparedMultigrid::new(d).solve(options)
+    }
+
+    fn prepare<'s>(&'s mut self, d: &'s Discretization) -> Box<dyn PreparedSolver + 's> {
+        Box::new(PreparedMultigrid::new(d))
+    }
+}
+
+/// Multigrid for one discretization, whose levels are made once.
+pub(super) struct PreparedMultigrid<'d> {
+    d: &'d Discretization,
+    hierarchy: Option<Hierarchy>,
+    /// How levels are made.
+    levels: fn(&Discretization) -> Hierarchy,
+}
+
+impl<'d> PreparedMultigrid<'d> {
+    pub(super) fn new(d: &'d Discretization) -> Self {
+        Self { d, hierarchy: None, levels: Hierarchy::new }
+    }
+
+    /// Solves on the levels as they are; the time limit counts from `start`.
+    fn attempt(&mut self, options: &SolverOptions, start: Instant) -> Result<Candidate, SolverError> {
+        let begin = Instant::now();
+        let (d, levels) = (self.d, self.levels);
+        let hierarchy = self.hierarchy.get_or_insert_with(|| levels(d));
+        let setup_seconds = begin.elapsed().as_secs_f64();
+        let mut candidate = solve_on(hierarchy, d, options, start)?;
+        candidate.statistics.setup_seconds = setup_seconds;
+        candidate.statistics.solve_seconds = begin.elapsed().as_secs_f64() - setup_seconds;
         Ok(candidate)
     }
 }
 
-impl Multigrid {
-    /// Solves on the levels that are made like this; the time limit counts from `start`.
-    fn solve_on(
-        &self,
-        levels: fn(&Discretization) -> Hierarchy,
-        d: &Discretization,
-        options: &SolverOptions,
-        start: Instant,
-    ) -> Result<Candidate, SolverError> {
-        let hierarchy = levels(d);
-        let setup_seconds = start.elapsed().as_secs_f64();
-        let decoupled = Decoupled::new(d);
-        let [gap, sum] = halves(&hierarchy, &decoupled, d, options);
-        let limits = Limits {
-            cycles: options.max_iterations.unwrap_or(MAX_CYCLES),
-            deadline: options.deadline(start),
-        };
-        let (gap, sum) = rayon::join(|| solve(&hierarchy, gap, &limits), || solve(&hierarchy, sum, &limits));
-        let (gap, sum) = (gap?, sum?);
-        let level_iterations: Vec<usize> =
-            gap.cycles.iter().zip(&sum.cycles).map(|(a, b)| *a.max(b)).collect();
-        let (w, (s, y)) = rayon::join(
-            || hierarchy.to_vertices(&gap.x),
-            || (hierarchy.to_vertices(&sum.x), hierarchy.to_vertices(&gap.y)),
-        );
-        Ok(Candidate {
-            displacement: decoupled.recombine(&s, &w),
-            multiplier: d.interior().iter().map(|&a| decoupled.gap_tension() * y[a]).collect(),
-            statistics: Statistics {
-                status: if gap.status == Status::Solved { sum.status } else { gap.status },
-                iterations: level_iterations.last().copied().unwrap_or(0),
-                level_iterations,
-                energies: gap.energies,
-                setup_seconds,
-                solve_seconds: start.elapsed().as_secs_f64() - setup_seconds,
-                ..Statistics::of(self.name())
-            },
-        })
+impl PreparedSolver for PreparedMultigrid<'_> {
+    fn solve(&mut self, options: &SolverOptions) -> Result<Candidate, SolverError> {
+        options.check()?;
+        let start = Instant::now();
+        let candidate = self.attempt(options, start)?;
+        let refinements = self.hierarchy.as_ref().map_or(0, Hierarchy::refinements);
+        if candidate.statistics.status != Status::Stalled || refinements == 0 {
+            return Ok(candidate);
+        }
+        (self.hierarchy, self.levels) = (None, Hierarchy::algebraic);
+        let mut on_algebraic_levels = self.attempt(options, start)?;
+        let method = format!("{NAME} on levels of {refinements} refinements");
+        on_algebraic_levels.statistics = on_algebraic_levels.statistics.after(method, candidate.statistics);
+        Ok(on_algebraic_levels)
     }
+}
+
+/// Solves on these levels; the time limit counts from `start`. The seconds in the statistics are left to others.
+fn solve_on(
+    hierarchy: &Hierarchy,
+    d: &Discretization,
+    options: &SolverOptions,
+    start: Instant,
+) -> Result<Candidate, SolverError> {
+    let decoupled = Decoupled::new(d);
+    let [gap, sum] = halves(hierarchy, &decoupled, d, options);
+    let limits =
+        Limits { cycles: options.max_iterations.unwrap_or(MAX_CYCLES), deadline: options.deadline(start) };
+    let (gap, sum) =
+        crate::parallel::join(|| solve(hierarchy, gap, &limits), || solve(hierarchy, sum, &limits));
+    let (gap, sum) = (gap?, sum?);
+    let level_iterations: Vec<usize> = gap.cycles.iter().zip(&sum.cycles).map(|(a, b)| *a.max(b)).collect();
+    let (w, (s, y)) = crate::parallel::join(
+        || hierarchy.to_vertices(&gap.x),
+        || (hierarchy.to_vertices(&sum.x), hierarchy.to_vertices(&gap.y)),
+    );
+    Ok(Candidate {
+        displacement: decoupled.recombine(&s, &w),
+        multiplier: d.interior().iter().map(|&a| decoupled.gap_tension() * y[a]).collect(),
+        statistics: Statistics {
+            status: if gap.status == Status::Solved { sum.status } else { gap.status },
+            iterations: level_iterations.last().copied().unwrap_or(0),
+            level_iterations,
+            energies: gap.energies,
+            ..Statistics::of(NAME)
+        },
+    })
 }
 
 /// The gap and the sum.

@@ -6,32 +6,15 @@
 
 use std::time::Instant;
 
-use serde::{Deserialize, Serialize};
-
-use super::Candidate;
 use super::active_set::{Limits, guess, settle};
-use super::qp_solver::unknowns;
+use super::candidate::{Candidate, unknowns};
+use super::statistics::PolishReport;
 use crate::discretization::Discretization;
 use crate::qp::{KktResiduals, QpProblem, Status};
 
 /// Linear solves for the gap. An accurate answer needs one to four; where the membranes touch without pushing, the contact
 /// set moves by one layer of vertices at a time. A solve costs about a hundredth of an interior-point solve.
 const MAX_STEPS: usize = 100;
-
-/// What the polish did.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct PolishReport {
-    /// Whether the polished result replaced the solver's.
-    pub kept: bool,
-    /// How often the contact set was repaired.
-    pub repairs: usize,
-    /// Whether the last contact set needed no repair.
-    pub settled: bool,
-    /// The largest relative KKT residual of the solver's answer.
-    pub residual_before: f64,
-    /// The largest relative KKT residual of the polished one.
-    pub residual_after: f64,
-}
 
 /// Polishes the candidate and keeps the result if its KKT residuals are smaller. `None` when a linear system cannot be
 /// solved, or no time is left.

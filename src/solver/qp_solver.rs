@@ -2,13 +2,13 @@
 
 use std::time::Instant;
 
+use super::candidate::unknowns;
 use super::polish::polish;
 use super::{Candidate, ContactSolver, SolverError, SolverOptions, Statistics};
 use crate::discretization::Discretization;
-use crate::qp::{Answer, BackendError, QpBackend, QpOptions, QpProblem, QpSolution, Status, contact_qp};
-
-/// What is left of a time limit that is over, seconds: to a backend, zero may mean that there is none.
-const SHORTEST: f64 = 1e-3;
+use crate::qp::{
+    Answer, BackendError, QpBackend, QpOptions, QpProblem, QpSolution, Status, TimeLimit, contact_qp,
+};
 
 /// Poses (3.4) as a [`QpProblem`], has it solved by a backend, and polishes the answer.
 pub struct QpSolver {
@@ -32,7 +32,7 @@ impl ContactSolver for QpSolver {
         let start = Instant::now();
         let qp = contact_qp(d);
         let posing = start.elapsed().as_secs_f64();
-        let solution = solve_nondimensional(self.backend.as_mut(), &qp, &qp_options(d, options, posing))?;
+        let solution = solve_nondimensional(self.backend.as_mut(), &qp, &qp_options(d, options, start))?;
         let statistics = Statistics {
             status: solution.status,
             iterations: solution.iterations,
@@ -49,21 +49,16 @@ impl ContactSolver for QpSolver {
     }
 }
 
-/// After `spent` seconds.
-fn qp_options(d: &Discretization, options: &SolverOptions, spent: f64) -> QpOptions {
+/// Of a solve that has begun at `begin`.
+fn qp_options(d: &Discretization, options: &SolverOptions, begin: Instant) -> QpOptions {
     let start = options.warm_start.as_ref().filter(|start| start.fits(d));
     let warm_start = start.map(|start| (unknowns(d, &start.displacement), start.multiplier.clone()));
     QpOptions {
         tolerance: options.tolerance,
         max_iterations: options.max_iterations,
-        time_limit: options.time_limit.map(|limit| (limit - spent).max(SHORTEST)),
+        time_limit: options.time_limit.map(|limit| limit.left_since(begin).unwrap_or(TimeLimit::SHORTEST)),
         warm_start,
     }
-}
-
-/// `x = (u1, u2)` at the interior vertices.
-pub(super) fn unknowns(d: &Discretization, displacement: &[Vec<f64>; 2]) -> Vec<f64> {
-    displacement.iter().flat_map(|u| d.interior().iter().map(|&a| u[a])).collect()
 }
 
 /// Has the problem solved in units of size 1, so that one tolerance fits every mesh (`q ~ h^2`) and all data.

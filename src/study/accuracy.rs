@@ -62,6 +62,7 @@ pub struct Bounded {
 
 /// There is no certified solution with a bound.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum AccuracyError {
     /// The solver cannot run.
     #[error(transparent)]
@@ -87,23 +88,25 @@ pub fn solve_bounded(
     options: &SolverOptions,
     tolerance: Tolerance,
 ) -> Result<Bounded, AccuracyError> {
-    let at = |tolerance: f64, solver: &mut dyn ContactSolver, options: &SolverOptions| {
-        let candidate = solver.solve(d, &SolverOptions { tolerance, ..options.clone() })?;
+    let mut solver = solver.prepare(d);
+    let mut at = |tolerance: f64, options: &SolverOptions| {
+        let candidate = solver.solve(&SolverOptions { tolerance, ..options.clone() })?;
         let solution = certify(d, candidate, tolerance)
             .map_err(|rejected| AccuracyError::Rejected(rejected, tolerance))?;
         Ok(Bounded::new(problem, domain, d, solution, tolerance)?)
     };
     let Tolerance::Fixed(tolerance) = tolerance else {
         let start = Instant::now();
-        let mut bounded = at(LOOSEST, solver, options)?;
+        let mut bounded = at(LOOSEST, options)?;
         // What cannot be had more accurately, or not in time, is certified as it is.
         while let Some(tighter) = bounded.tighter() {
-            let time_limit = options.time_limit.map(|limit| limit - start.elapsed().as_secs_f64());
-            if time_limit.is_some_and(|left| left <= 0.0) {
+            let time_limit = options.time_limit.map(|limit| limit.left_since(start));
+            if time_limit == Some(None) {
                 break;
             }
+            let time_limit = time_limit.flatten();
             let warm_start = Some(Fields::from(&bounded.solution).into_start(d));
-            match at(tighter, solver, &SolverOptions { warm_start, time_limit, ..options.clone() }) {
+            match at(tighter, &SolverOptions { warm_start, time_limit, ..options.clone() }) {
                 Ok(better) => bounded = better,
                 Err(AccuracyError::Rejected(..)) => break,
                 Err(error) => return Err(error),
@@ -111,7 +114,7 @@ pub fn solve_bounded(
         }
         return Ok(bounded);
     };
-    at(tolerance, solver, options)
+    at(tolerance, options)
 }
 
 impl Bounded {
@@ -124,7 +127,7 @@ impl Bounded {
         tolerance: f64,
     ) -> Result<Self, MeasureError> {
         let start = Instant::now();
-        let bound = ErrorBound::new(problem, domain, d, solution.displacement())?;
+        let bound = ErrorBound::of_solution(problem, domain, d, &solution)?;
         Ok(Self { solution, bound, tolerance, bound_seconds: start.elapsed().as_secs_f64() })
     }
 
@@ -140,7 +143,7 @@ impl Bounded {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "clarabel"))]
 mod tests {
     use super::*;
     use crate::mesh::{Pattern, rectangle};
@@ -172,7 +175,7 @@ mod tests {
             let tight = solve(&mut *solver, Tolerance::Fixed(1e-10));
             assert!((auto.bound.total / tight.bound.total - 1.0).abs() < 2.0 * FRACTION, "the same bound");
         }
-        // The twin: as loose as it starts, the solver leaves more than that.
+        // The negative test: as loose as it starts, the solver leaves more than that.
         let loose = solve(&mut QpSolver::new(Clarabel), Tolerance::Fixed(LOOSEST));
         assert!(loose.tighter().is_some_and(|tolerance| tolerance < LOOSEST));
     }

@@ -3,8 +3,6 @@
 use std::sync::Arc;
 use std::time::Instant;
 
-use serde::{Deserialize, Serialize};
-
 use super::accuracy::{Bounded, Tolerance, solve_bounded};
 use super::prolongation::Fields;
 use super::{StudyError, mark};
@@ -13,6 +11,7 @@ use crate::discretization::Discretization;
 use crate::estimate::{ErrorBound, energy_error, residual_indicators};
 use crate::mesh::{Bisection, Mesh};
 use crate::problem::{ContactProblem, Domain, ExactSolution};
+use crate::qp::TimeLimit;
 use crate::solver::{Candidate, ContactSolver, SolverOptions, StartingPoint, Statistics};
 
 /// The fraction of the squared error in the triangles that are marked.
@@ -34,12 +33,13 @@ pub struct AdaptiveStudy {
     options: SolverOptions,
     tolerance: Tolerance,
     marked: Vec<Vec<usize>>,
-    /// The solution on the current mesh.
-    last: Option<Bounded>,
+    /// The current mesh's discretization and solution.
+    last: Option<(Discretization, Bounded)>,
 }
 
 /// One level: a mesh and the error on it. Written as a row of `adapt.csv`.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub struct AdaptiveLevel {
     /// The number of the level, from 0.
     pub level: usize,
@@ -95,9 +95,9 @@ impl AdaptiveLevel {
 pub struct Checkpoint {
     /// Of each refinement the triangles that were marked.
     pub marked: Vec<Vec<usize>>,
-    /// `[u1, u2]` over vertices.
+    /// `[u1, u2]` over vertices, as they were certified.
     pub displacement: [Vec<f64>; 2],
-    /// `lambda_h` over vertices.
+    /// `lambda_h` over vertices, likewise.
     pub lambda: Vec<f64>,
     /// The tolerance within which they are certified.
     pub tolerance: f64,
@@ -130,7 +130,7 @@ impl AdaptiveStudy {
     }
 
     /// Limits the time of each solve from now on, seconds.
-    pub fn set_time_limit(&mut self, time_limit: Option<f64>) {
+    pub fn set_time_limit(&mut self, time_limit: Option<TimeLimit>) {
         self.options.time_limit = time_limit;
     }
 
@@ -141,7 +141,12 @@ impl AdaptiveStudy {
 
     /// The solution on the current mesh and its bound, once there is one.
     pub fn solution(&self) -> Option<(&ContactSolution, &ErrorBound)> {
-        self.last.as_ref().map(|last| (&last.solution, &last.bound))
+        self.last.as_ref().map(|(_, last)| (&last.solution, &last.bound))
+    }
+
+    /// The discretization that it solves.
+    pub fn discretization(&self) -> Option<&Discretization> {
+        self.last.as_ref().map(|(d, _)| d)
     }
 
     /// Refines where the error of the last level is (but for the first level), solves and bounds the error.
@@ -152,7 +157,7 @@ impl AdaptiveStudy {
         let start = Instant::now();
         let prolonged = match &self.last {
             None => None,
-            Some(last) => {
+            Some((_, last)) => {
                 let marked = mark(&last.bound.indicators, FRACTION);
                 let parents = self.bisection.refine(&marked)?;
                 self.marked.push(marked);
@@ -169,7 +174,7 @@ impl AdaptiveStudy {
             .map_err(|error| StudyError::at(level, error))?;
         let seconds = start.elapsed().as_secs_f64();
         let row = self.row(&d, &bounded, seconds)?;
-        self.last = Some(bounded);
+        self.last = Some((d, bounded));
         Ok(row)
     }
 
@@ -211,12 +216,15 @@ impl AdaptiveStudy {
 
     /// What a later run goes on from; `None` before the first level.
     pub fn checkpoint(&self) -> Option<Checkpoint> {
-        self.last.as_ref().map(|last| Checkpoint {
-            marked: self.marked.clone(),
-            displacement: last.solution.displacement().clone(),
-            lambda: last.solution.lambda().to_vec(),
-            tolerance: last.tolerance,
-            statistics: last.solution.statistics().clone(),
+        self.last.as_ref().map(|(_, last)| {
+            let (displacement, lambda) = last.solution.certified();
+            Checkpoint {
+                marked: self.marked.clone(),
+                displacement: displacement.clone(),
+                lambda: lambda.to_vec(),
+                tolerance: last.tolerance,
+                statistics: last.solution.statistics().clone(),
+            }
         })
     }
 
@@ -251,7 +259,8 @@ impl AdaptiveStudy {
         let Ok(solution) = certify(&d, Candidate { displacement, multiplier, statistics }, tolerance) else {
             return Ok(false);
         };
-        self.last = Some(Bounded::new(&self.problem, self.domain.as_ref(), &d, solution, tolerance)?);
+        let bounded = Bounded::new(&self.problem, self.domain.as_ref(), &d, solution, tolerance)?;
+        self.last = Some((d, bounded));
         self.marked = marked;
         self.bisection = bisection;
         Ok(true)

@@ -22,7 +22,7 @@ use std::time::Instant;
 
 use crate::action::{Residuals, certify};
 use crate::discretization::Discretization;
-use crate::qp::Status;
+use crate::qp::{Status, TimeLimit};
 use crate::solver::{ContactSolver, SolverOptions, Statistics};
 
 /// The `origin` of rows that this crate has measured.
@@ -144,7 +144,7 @@ impl Contestant {
 impl Row {
     /// Whether it took longer than was allowed.
     fn exceeds(&self, options: &SolverOptions) -> bool {
-        let too_long = |limit: f64| self.total_seconds.is_some_and(|total| total > limit);
+        let too_long = |limit: TimeLimit| self.total_seconds.is_some_and(|total| total > limit.seconds());
         self.status == Status::TimeLimit.as_str() || options.time_limit.is_some_and(too_long)
     }
 }
@@ -157,7 +157,7 @@ fn blank(name: &str, place: &Place) -> Row {
         vertices: place.discretization.mesh().points().len(),
         solver: name.into(),
         origin: ORIGIN.into(),
-        threads: Some(rayon::current_num_threads()),
+        threads: Some(crate::parallel::current_num_threads()),
         ..Row::default()
     }
 }

@@ -12,6 +12,7 @@ use crate::discretization::{Discretization, DiscretizationError};
 use crate::estimate::{ErrorNorms, MeasureError};
 use crate::mesh::{MeshError, MeshFamily};
 use crate::problem::{ContactProblem, ExactSolution, ProblemError};
+use crate::qp::TimeLimit;
 use crate::solver::{ContactSolver, SolverError, SolverOptions};
 
 /// Solves a case with a known solution on finer and finer meshes, each solve started from the one before.
@@ -28,6 +29,7 @@ pub struct ConvergenceStudy {
 
 /// A level of a study fails.
 #[derive(Debug, Error)]
+#[non_exhaustive]
 pub enum StudyError {
     /// The data make no problem.
     #[error(transparent)]
@@ -86,7 +88,7 @@ impl ConvergenceStudy {
     }
 
     /// Limits the time of each solve from now on, seconds.
-    pub fn set_time_limit(&mut self, time_limit: Option<f64>) {
+    pub fn set_time_limit(&mut self, time_limit: Option<TimeLimit>) {
         self.options.time_limit = time_limit;
     }
 

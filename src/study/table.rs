@@ -1,11 +1,10 @@
 //! The figures of a convergence study and their rates.
 
-use serde::{Deserialize, Serialize};
-
 use super::exponent;
 
 /// One level: a mesh and the errors of the solution on it. Written as a row of `summary.csv`.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "files", derive(serde::Serialize, serde::Deserialize))]
 pub struct LevelErrors {
     /// The number of the level, from 0.
     pub level: usize,

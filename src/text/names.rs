@@ -23,6 +23,14 @@ pub(crate) fn nearest<'k>(name: &str, known: impl IntoIterator<Item = &'k str>) 
         .min_by_key(|&(_, slips)| slips)
 }
 
+/// The known name that was meant by `name`: the nearest, when it differs in at most a third of the letters, or in one.
+pub(crate) fn meant<'k>(name: &str, known: impl IntoIterator<Item = &'k str>) -> Option<&'k str> {
+    let letters = name.chars().count();
+    nearest(name, known)
+        .filter(|&(_, slips)| slips <= (letters / 3).max(1) && slips < letters)
+        .map(|(known, _)| known)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -46,5 +54,12 @@ mod tests {
         assert_eq!(nearest("LOAD", known), Some(("load", 0)));
         assert_eq!(nearest("weight", known), Some(("height", 1)));
         assert_eq!(nearest("x", []), None);
+    }
+
+    #[test]
+    fn a_name_that_is_far_from_all_means_none() {
+        let known = ["tension", "load", "height"];
+        assert_eq!(["tnesion", "loads", "hieght"].map(|name| meant(name, known)), known.map(Some));
+        assert_eq!(["obstacle", "radius", "q", ""].map(|name| meant(name, known)), [None; 4]);
     }
 }

@@ -100,6 +100,7 @@ fn polygon() -> String {
 
 fn gmsh_files() -> Vec<(&'static str, Vec<u8>)> {
     const V2: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
+    const V40: &str = "$MeshFormat\n4 0 8\n$EndMeshFormat\n";
     const V4: &str = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n";
     let binary = |version: &str, nodes: &[&[u8]]| {
         let head = format!("$MeshFormat\n{version} 1 8\n");
@@ -116,6 +117,26 @@ fn gmsh_files() -> Vec<(&'static str, Vec<u8>)> {
             "2^63 nodes, 4.1",
             text(format!("{V4}$Nodes\n1 9223372036854775808 1 9\n2 1 0 9223372036854775808\n")),
         ),
+        (
+            "2^63 nodes, 4.0",
+            text(format!("{V40}$Nodes\n1 9223372036854775808\n1 2 0 9223372036854775808\n1 0 0 0\n")),
+        ),
+        ("as many nodes as bytes, 4.0", [V40.as_bytes(), b"$Nodes\n1 1\n1 2 0 1048576\n", &zeros].concat()),
+        ("2^63 names", text(format!("{V4}$PhysicalNames\n9223372036854775808\n"))),
+        ("names", text(format!("{V4}$PhysicalNames\n{}\n{}$EndPhysicalNames\n", LONG / 8, names(LONG / 8)))),
+        ("2^63 entities", text(format!("{V4}$Entities\n0 9223372036854775808 0 0\n"))),
+        ("groups of an entity", {
+            let groups: String = (1..LONG / 8).map(|k| format!("{k} ")).collect();
+            text(format!("{V4}$Entities\n1 0 0 0\n1 0 0 0 {} {groups}\n$EndEntities\n", LONG / 8 - 1))
+        }),
+        ("groups of elements", {
+            let points: String = (1..LONG / 16).map(|k| format!("1 15 1 {k} 1\n")).collect();
+            text(format!(
+                "{V2}$Nodes\n1\n1 0 0 0\n$EndNodes\n$Elements\n{}\n{points}$EndElements\n",
+                LONG / 16 - 1
+            ))
+        }),
+        ("comments", [&b"#\n".repeat(LONG / 2), V2.as_bytes(), &b"$\n$ \n".repeat(LONG / 5)].concat()),
         ("2^63 blocks, 4.1", text(format!("{V4}$Nodes\n9223372036854775808 1 1 1\n"))),
         ("2^64 nodes", text(format!("{V2}$Nodes\n18446744073709551616\n"))),
         ("2^63 nodes, 2.2 binary", binary("2.2", &[b"9223372036854775808\n"])),
@@ -144,6 +165,11 @@ fn gmsh_files() -> Vec<(&'static str, Vec<u8>)> {
         ("a fan", text(fan(20_000))),
         ("the same triangle", text(same_triangle(20_000))),
     ]
+}
+
+/// Names of one letter, each of a group of its own.
+fn names(n: usize) -> String {
+    (1..=n).map(|k| format!("1 {k} \"a\"\n")).collect()
 }
 
 /// Nodes of a circle, triangles from its centre.

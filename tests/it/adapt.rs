@@ -163,9 +163,12 @@ fn a_stopped_run_goes_on_to_the_same_bytes() {
     run(in_parts.path(), "adapt case.toml -q --tolerance 0.05").success();
     assert!(rows(in_parts.path()).starts_with(&before), "rows are added");
 
-    // Another case file starts anew, and so does one whose checkpoint is broken.
+    // Another case starts anew where it is told to, and so does one whose checkpoint is broken.
     fs::write(in_parts.path().join("case.toml"), CASE.replace('4', "3")).unwrap();
-    run(in_parts.path(), "adapt case.toml -q --tolerance 0.2").success();
+    let refused = run(in_parts.path(), "adapt case.toml -q --tolerance 0.2");
+    assert_eq!(refused.code, Some(2), "{}", refused.stderr);
+    assert_eq!(rows(in_parts.path()).lines().next(), before.lines().next());
+    run(in_parts.path(), "adapt case.toml -q --tolerance 0.2 --overwrite").success();
     assert!(!rows(in_parts.path()).starts_with(&before));
     let solution = fs::read(at_once.path().join("out/case/solution.vtu")).unwrap();
     fs::write(at_once.path().join("out/case/checkpoint.npz"), b"PK").unwrap();

@@ -95,7 +95,7 @@ fn a_good_answer_is_certified_and_shown_like_a_backend() {
     assert_eq!((&summary["backend"], &summary["status"]), (&"answer".into(), &"unknown".into()));
     assert_eq!((&summary["certified"], &summary["tolerance"]), (&true.into(), &1e-7.into()));
     assert!(summary["contact_vertices"].as_u64().is_some_and(|count| count > 0));
-    assert_eq!(files(&folder.path().join("verdict")), ["summary.json"]);
+    assert_eq!(files(&folder.path().join("verdict")), ["membranes.json", "summary.json"]);
 
     let quiet = judge(folder.path(), &format!("--tolerance {REACHED} --quiet"));
     assert_eq!((quiet.code, quiet.stdout.as_str()), (Some(0), ""));
@@ -117,14 +117,20 @@ fn the_tolerance_of_the_case_file_counts_unless_another_is_named() {
 fn a_wrong_answer_is_shown_but_not_certified() {
     let (x, y) = solved_elsewhere();
     let negated: Vec<f64> = y.iter().map(|y| -y).collect();
-    let (mut moved, middle) = (x.clone(), x.len() / 4);
+    let (mut moved, middle, zero) = (x.clone(), x.len() / 4, vec![0.0; x.len()]);
+    let z = vec![0.0; y.len()];
     moved[middle] += 1e-6;
-    for (x, y, says) in [(&x, &negated, "stationarity"), (&moved, &y, "action_mismatch")] {
+    for (x, y, says, remedy) in [
+        (&x, &negated, "stationarity", "with -y in place of y it certifies"),
+        (&moved, &y, "action_mismatch", "polished it certifies"),
+        (&moved, &negated, "stationarity", "with -y in place of y, and polished"),
+        (&zero, &z, "stationarity", "allow more with --tolerance"),
+    ] {
         let folder = folder_with(x, y);
         let wrong = judge(folder.path(), &format!("--tolerance {REACHED} --out verdict"));
         assert_eq!(wrong.code, Some(1), "{}", wrong.stdout);
         assert_eq!(wrong.stderr.lines().count(), 1, "{}", wrong.stderr);
-        for word in ["error: case.toml: answer does not certify", says, "--tolerance"] {
+        for word in ["error: case.toml: answer does not certify", says, remedy] {
             assert!(wrong.stderr.contains(word), "{word}: {}", wrong.stderr);
         }
         let rows: Vec<&str> = wrong.stdout.lines().filter(|line| line.contains("certified")).collect();

@@ -1,10 +1,12 @@
-//! The contract of a QP backend, held against every one of the build.
+//! The contract of a QP backend, checked for every one in the build.
 
 use membrane_contact::action::certify;
 use membrane_contact::discretization::Discretization;
 use membrane_contact::mesh::{Pattern, rectangle};
 use membrane_contact::problem::Case;
-use membrane_contact::qp::{Clarabel, KktResiduals, QpBackend, QpOptions, QpProblem, Status, contact_qp};
+use membrane_contact::qp::{
+    Clarabel, KktResiduals, QpBackend, QpOptions, QpProblem, Status, TimeLimit, contact_qp,
+};
 use membrane_contact::solver::{ActiveSet, Candidate, ContactSolver, SolverOptions, StartingPoint};
 use membrane_contact::sprs::{CsMat, TriMat};
 
@@ -105,7 +107,7 @@ fn every_backend_says_when_it_stops_early_and_returns_its_iterate() {
         assert_eq!((solution.x.len(), solution.y.len()), (qp.q().len(), qp.b().len()));
         assert!(KktResiduals::new(&qp, &solution.x, &solution.y).worst() > TOLERANCE);
 
-        let hurried = QpOptions { time_limit: Some(1e-9), ..QpOptions::default() };
+        let hurried = QpOptions { time_limit: Some(TimeLimit::SHORTEST), ..QpOptions::default() };
         assert_eq!(
             backend.solve(&qp, &hurried).expect("it runs").status,
             Status::TimeLimit,
@@ -219,7 +221,24 @@ fn options_out_of_range_are_refused() {
     for tolerance in [0.0, 1.0, -1e-8, f64::NAN] {
         assert!(with(SolverOptions { tolerance, ..SolverOptions::default() }).is_err());
     }
-    for seconds in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert!(with(SolverOptions { time_limit: Some(seconds), ..SolverOptions::default() }).is_err());
+}
+
+#[test]
+fn a_limit_of_time_is_kept_from_the_shortest_to_the_longest_by_every_solver() {
+    let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [40, 40], Pattern::Right).unwrap();
+    let problem = exact(Case::Circle, &[]).problem().unwrap();
+    let d = Discretization::new(&problem, mesh).unwrap();
+    for mut solver in solvers() {
+        let mut status = |seconds: f64| {
+            let time_limit = Some(TimeLimit::from_seconds(seconds).expect("a limit"));
+            let options = SolverOptions { time_limit, ..SolverOptions::default() };
+            solver.solve(&d, &options).expect("it runs").statistics.status
+        };
+        assert_eq!(status(1e-300), Status::TimeLimit);
+        assert_eq!((status(60.0), status(1e19)), (Status::Solved, Status::Solved));
+    }
+    // What is no limit cannot be asked for.
+    for seconds in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e300] {
+        assert!(TimeLimit::from_seconds(seconds).is_err());
     }
 }

@@ -1,6 +1,6 @@
 //! Bad input: exit code 2, one line that says what is wrong, where, and the remedy, and nothing is written.
 //!
-//! A fault is a replacement in input that is accepted: that input is the negative twin of every refusal.
+//! A fault is a replacement in input that is accepted: that input is what every refusal is compared with.
 
 use std::fs;
 use std::path::Path;
@@ -124,11 +124,16 @@ const BAD_KEYS: &[Fault] = &[
     ("[mesh]", "[mehs]", &["`mehs`", "nearest is `mesh`"]),
     ("cells", "cels", &["`mesh.cels`", "nearest is `cells`"]),
     ("[solver]", "[slover]", &["`slover`", "nearest is `solver`"]),
+    ("height", "obstacle", &["`membranes.obstacle`", "known here are tension, load, height"]),
     ("polish", "polihs", &["`solver.polihs`", "nearest is `polish`"]),
     ("tension = [1.0, 3.0]", "", &["`membranes.tension` is missing", "add `tension"]),
     ("load = [-15.0, \"10*sin(pi*x)\"]", "", &["`membranes.load` is missing", "add `load"]),
     ("shape = \"square\"", "", &["there is no domain", "add a table [domain]"]),
-    ("shape = \"square\"", "shape = \"square\"\nradius = 1", &["`domain.radius`", "nearest is"]),
+    (
+        "shape = \"square\"",
+        "shape = \"square\"\nradius = 1",
+        &["`domain.radius`", "known here are mesh, shape, lower, side"],
+    ),
     ("title = \"two plates\"", "[parameters]\nq = 1", &["`parameters`", "add `case"]),
     ("title = \"two plates\"", "case = \"disk\"", &["`membranes` contradicts `case`", "remove one"]),
 ];
@@ -158,6 +163,8 @@ const BAD_MEMBRANES: &[Fault] = &[
     ("10*sin(pi*x)", "x**2", &["`**` at column 2", "write `^`"]),
     ("10*sin(pi*x)", "1,5", &["comma at column 2", "`.`"]),
     ("10*sin(pi*x)", "atan2(x)", &["`atan2`", "give it 2"]),
+    ("10*sin(pi*x)", "|x|", &["`|` at column 1", "`abs(...)`"]),
+    ("10*sin(pi*x)", "sgn(x)", &["unknown name `sgn`", "`if(a > 0, 1, if(a < 0, -1, 0))`"]),
     ("10*sin(pi*x)", "z", &["unknown name `z`", "`x` and `y`"]),
     ("10*sin(pi*x)", "1/(x - x)", &["f2", "inf at the point (", "finite"]),
     ("10*sin(pi*x)", "ln(x - 0.5)", &["f2", "NaN at the point (", "finite"]),
@@ -179,6 +186,10 @@ const BAD_SOLVER: &[Fault] = &[
     ("polish = true", "polish = \"yes\"", &["`solver.polish` must be true or false"]),
     ("polish = true", "max_iterations = 0", &["`solver.max_iterations`", "at least 1"]),
     ("polish = true", "time_limit = 0", &["`solver.time_limit` = 0", "above 0"]),
+    ("polish = true", "time_limit = -1", &["`solver.time_limit` = -1", "above 0"]),
+    ("polish = true", "time_limit = nan", &["`solver.time_limit` = NaN", "above 0"]),
+    ("polish = true", "time_limit = inf", &["`solver.time_limit` = inf", "leave it out for no limit"]),
+    ("polish = true", "time_limit = 1e300", &["`solver.time_limit` = 1e300", "leave it out for no limit"]),
 ];
 
 const BAD_MESH: &[Fault] = &[
@@ -231,7 +242,7 @@ const BAD_POLYGON: &[Fault] = &[
     ("[2, 2], [0, 2]", "[nan, 2], [0, 2]", &["not finite", "give the corners"]),
     ("[2, 2], [0, 2]", "[0, 2], [3, 2]", &["cross"]),
     ("[0.5, 1]", "[0.5, 3]", &["cross", "(0.5, 3)"]),
-    ("[0.5, 1]", "[0.5, 1], [0.5, 0.5]", &["same vertex twice", "give the corners"]),
+    ("[0.5, 1]", "[0.5, 1], [1, 0.5]", &["same vertex twice", "give the corners"]),
     (
         "[0.5, 0.5], [1, 0.5], [1, 1], [0.5, 1]",
         "[5, 5], [6, 5], [6, 6]",
@@ -261,7 +272,7 @@ const BAD_MESH_FILE: &[Fault] = &[
     ("5 0.5 0.5 0", "5 nan 0.5 0", &["line 10", "node 5", "finite"]),
     ("5 0.5 0.5 0", "5 0.5 0.5 0.1", &["not flat: node 5", "plane"]),
     ("5 0.5 0.5 0", "5 0.25 0.25 0", &["degenerate", "Gmsh's element 2", "remove it"]),
-    ("5 0.5 0.5 0", "5 0.5 0.1 0", &["overlap", "Gmsh's element 2"]),
+    ("5 0.5 0.5 0", "5 0.5 0.1 0", &["overlap", "Gmsh's elements 2, 3"]),
     ("2 2 2 0 1 6 2 5", "2 2 2 0 1 6 2 3", &["overlap", "one triangle on each side"]),
     ("6 2 2 0 1 4 6 5", "6 2 2 0 1 6 2 5", &["are the same", "remove one"]),
     ("1 4 1 6\n6 2 2 0 1 4 6 5", "1 4 1 5\n6 15 2 0 1 1", &["inside the edge", "split that triangle"]),
@@ -270,15 +281,19 @@ const BAD_MESH_FILE: &[Fault] = &[
 
 /// Arguments that are refused, what the message has to say, and the arguments with the remedy taken.
 const BAD_ARGUMENTS: &[(&str, &[&str], &str)] = &[
-    ("", &["requires a subcommand", "solve, check, converge, adapt, bench, export, cases"], "--help"),
+    (
+        "",
+        &["requires a subcommand", "solve, check, converge, adapt, bench, export, cases, completions, man"],
+        "--help",
+    ),
     ("frobnicate case.toml", &["'frobnicate'", "membranes --help"], "check case.toml"),
     ("sovle case.toml", &["'sovle'", "'solve'"], "solve case.toml"),
-    ("solve", &["<CASE.toml>", "not provided"], "solve case.toml"),
+    ("solve", &["<CASE.toml>", "not provided", "see `membranes solve --help`"], "solve case.toml"),
     ("check case.toml --quite", &["'--quite'", "'--quiet'"], "check case.toml --quiet"),
     ("check case.toml case.toml", &["unexpected argument 'case.toml'"], "check case.toml"),
     ("check cas.toml", &["cas.toml", "name an existing file", "membranes cases"], "check case.toml"),
     ("check folder", &["folder", "name a readable file"], "check case.toml"),
-    ("check endless.toml", &["endless.toml", "too large", "meshed by Gmsh"], "check case.toml"),
+    ("check endless.toml", &["endless.toml", "GiB of memory", "meshed by Gmsh"], "check case.toml"),
     ("check latin1.toml", &["latin1.toml", "save it as UTF-8"], "check case.toml"),
     ("check deep.toml", &["`membranes.load[1]`", "too deeply", "simplify"], "check case.toml"),
     ("check case.toml --refine -1", &["'--refine <N>'", "at least 0"], "check case.toml --refine 1"),
@@ -290,7 +305,11 @@ const BAD_ARGUMENTS: &[(&str, &[&str], &str)] = &[
         &["file", "--out"],
         "export case.toml --format qps --out new",
     ),
-    ("solve case.toml --tolerance 1", &["'1'", "between 0 and 1"], "solve case.toml --tolerance 1e-6"),
+    (
+        "solve case.toml --tolerance 1",
+        &["'1'", "between 0 and 1", "membranes solve --help"],
+        "solve case.toml --tolerance 1e-6",
+    ),
     ("solve case.toml --tolerance -1", &["'-1'", "between 0 and 1"], "solve case.toml --tolerance 1e-6"),
     ("solve case.toml --tolerance nan", &["'nan'", "between 0 and 1"], "solve case.toml --tolerance 1e-6"),
     (
@@ -305,6 +324,35 @@ const BAD_ARGUMENTS: &[(&str, &[&str], &str)] = &[
         "solve case.toml --out file/new",
         &["file/new", "another folder with --out"],
         "solve case.toml --out new",
+    ),
+    (
+        "solve case.toml --time-limit 0",
+        &["--time-limit", "0 is out of range"],
+        "solve case.toml --time-limit 60",
+    ),
+    (
+        "solve case.toml --time-limit nan",
+        &["--time-limit", "NaN is out"],
+        "solve case.toml --time-limit 1e19",
+    ),
+    (
+        "solve case.toml --time-limit 1e300",
+        &["--time-limit", "1e300 is out"],
+        "solve case.toml --time-limit 60",
+    ),
+    (
+        "solve case.toml --time-limit soon",
+        &["--time-limit", "choose seconds"],
+        "solve case.toml --time-limit 60",
+    ),
+    ("converge disk.toml --levels 0", &["--levels", "at least 1"], "converge disk.toml --levels 1"),
+    ("converge disk.toml --levels 30", &["29 refinements", "refine less"], "converge disk.toml --levels 2"),
+    ("converge disk.toml --levels -1", &["--levels", "at least 1"], "converge disk.toml --levels 1"),
+    ("bench disk.toml --levels 0", &["--levels", "at least 1"], "bench disk.toml --levels 1"),
+    (
+        "adapt disk.toml --max-vertices 3",
+        &["first mesh has 61 vertices", "--max-vertices 3"],
+        "adapt disk.toml --max-vertices 100 --tolerance 0.9",
     ),
     ("cases stirp", &["`stirp`", "nearest is `strip`"], "cases strip"),
 ];
@@ -383,10 +431,11 @@ fn every_fault_in_a_file_is_refused_in_one_line_and_without_it_the_file_is_accep
 }
 
 #[test]
-fn bad_arguments_are_refused_in_one_line_and_mended_ones_accepted() {
+fn bad_arguments_are_refused_in_one_line_and_corrected_ones_accepted() {
     let folder = folder_with(SQUARE, MESH);
     let write = |name: &str, bytes: &[u8]| fs::write(folder.path().join(name), bytes).unwrap();
     write("file", b"not a folder");
+    write("disk.toml", DISK.as_bytes());
     write("latin1.toml", b"title = \"Stra\xdfe\"");
     let deep = format!("{}x{}", "(1 + ".repeat(1000), ")".repeat(1000));
     write("deep.toml", SQUARE.replace("-15.0", &format!("{deep:?}")).as_bytes());
@@ -395,10 +444,10 @@ fn bad_arguments_are_refused_in_one_line_and_mended_ones_accepted() {
     endless.set_len(1 << 30).unwrap();
     fs::create_dir(folder.path().join("folder")).unwrap();
     assert!(!complaints(folder.path(), "cases", &[]).is_empty(), "to be accepted is no refusal");
-    for (bad, says, mended) in BAD_ARGUMENTS {
+    for (bad, says, fixed) in BAD_ARGUMENTS {
         let complaints = complaints(folder.path(), bad, says);
         assert!(complaints.is_empty(), "{bad}: {}", complaints.join("\n"));
-        let run = run(folder.path(), mended);
-        assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""), "{mended}");
+        let run = run(folder.path(), fixed);
+        assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""), "{fixed}");
     }
 }

@@ -9,7 +9,7 @@ use tempfile::tempdir;
 use super::program::{files, lines_too_long, run};
 
 /// What it writes.
-const RESULTS: [&str; 3] = ["bench.csv", "bench.md", "bench.png"];
+const RESULTS: [&str; 4] = ["bench.csv", "bench.md", "bench.png", "membranes.json"];
 
 const HEADER: &str = "problem,n,vertices,solver,origin,threads,status,certified,residual,iterations,setup_seconds,\
                       solve_seconds,certify_seconds,total_seconds,work_unit_seconds,work_units,contact_vertices";

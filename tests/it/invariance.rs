@@ -101,7 +101,7 @@ fn is_seen(property: Property) {
     );
 }
 
-/// A certified solution by one of our own solvers.
+/// A certified solution by one of the built-in solvers.
 fn solve_by(solver: &mut dyn ContactSolver, d: &Discretization) -> Result<ContactSolution, String> {
     let options = SolverOptions { tolerance: TOLERANCE, ..SolverOptions::default() };
     let name = solver.name().to_owned();
@@ -174,7 +174,7 @@ impl Fields {
     }
 }
 
-/// The twin: each part of a solution that is changed is seen.
+/// The negative test: each part of a solution that is changed is seen.
 #[test]
 fn a_change_of_any_part_is_seen() {
     let property: Property = |draw| {

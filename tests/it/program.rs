@@ -19,8 +19,8 @@ const INTERIOR: u64 = 3 * 3;
 /// `J` at `u1 = 0.1 + 0.05 x`, `u2 = 0`, which is admissible: the minimum lies below.
 const UNLOADED_ENERGY: f64 = 0.5 * 0.05 * 0.05 + 2.0 * 0.125;
 
-/// What `solve` writes.
-const RESULTS: [&str; 3] = ["membranes.png", "solution.vtu", "summary.json"];
+/// What `solve` writes: the record of the case, and the results.
+const RESULTS: [&str; 4] = ["membranes.json", "membranes.png", "solution.vtu", "summary.json"];
 
 /// Two membranes on the unit square, partly in contact.
 const CASE: &str = r#"
@@ -112,7 +112,7 @@ pub fn lines_too_long(text: &str) -> Vec<&str> {
 fn help_names_every_command_and_fits_the_terminal() {
     let folder = tempdir().unwrap();
     let help = run(folder.path(), "--help").success();
-    for command in ["solve", "check", "converge", "bench", "export", "cases"] {
+    for command in ["solve", "check", "converge", "adapt", "bench", "export", "cases", "completions", "man"] {
         assert!(help.contains(&format!("\n  {command} ")), "{command}: {help}");
         let of_command = run(folder.path(), &format!("{command} --help")).success();
         assert!(of_command.contains(&format!("Usage: membranes {command}")), "{of_command}");
@@ -122,6 +122,33 @@ fn help_names_every_command_and_fits_the_terminal() {
     assert_eq!(lines_too_long(&"x".repeat(COLUMNS + 1)).len(), 1);
     let version = run(folder.path(), "--version").success();
     assert_eq!(version, format!("membranes {}\n", env!("CARGO_PKG_VERSION")));
+}
+
+#[test]
+fn shells_and_man_know_every_command_and_what_it_takes() {
+    let folder = tempdir().unwrap();
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let script = run(folder.path(), &format!("completions {shell}")).success();
+        assert!(["adapt", "max-vertices", "overwrite"].iter().all(|word| script.contains(word)), "{shell}");
+    }
+    assert_eq!(run(folder.path(), "completions cmd").code, Some(2));
+    let page = run(folder.path(), "man").success();
+    assert!(page.contains(".TH membranes") && page.contains("membranes\\-solve(1)"), "{page}");
+    run(folder.path(), "man --out pages").success();
+    let pages = files(&folder.path().join("pages"));
+    assert!(
+        pages.contains(&"membranes.1".into()) && pages.contains(&"membranes-adapt.1".into()),
+        "{pages:?}"
+    );
+    let solve = fs::read_to_string(folder.path().join("pages/membranes-solve.1")).unwrap();
+    assert!(solve.contains("time\\-limit"), "{solve}");
+}
+
+#[test]
+fn membranes_at_rest_are_not_to_be_refined() {
+    let folder = folder_with(&CASE.replace("-2.0, \"10*sin(pi*x)\"", "0, 0").replace("0.1 + 0.05*x", "0.1"));
+    let table = run(folder.path(), "solve plates.toml").success();
+    assert!(table.contains("(nothing is loaded: rounding)") && !table.contains("refine"), "{table}");
 }
 
 #[test]
@@ -263,7 +290,11 @@ fn what_is_not_certified_leaves_no_solution() {
     for word in ["error: plates.toml: ", "does not certify", "iteration_limit", "allow more iterations"] {
         assert!(run.stderr.contains(word), "{word}: {}", run.stderr);
     }
-    assert_eq!(files(&results), ["notes.txt", "summary.json"], "the earlier solution is not this run's");
+    assert_eq!(
+        files(&results),
+        ["membranes.json", "notes.txt", "summary.json"],
+        "the earlier solution is not this run's"
+    );
     let summary = summary(&results);
     assert_eq!(summary["certified"], false);
     assert_eq!(summary["status"], "iteration_limit");
@@ -303,7 +334,8 @@ fn export_writes_each_format() {
     for (format, names, magic) in formats {
         let told = run(folder.path(), &format!("export plates.toml --format {format} --out {format}"));
         let told = told.success();
-        assert_eq!(files(&folder.path().join(format)), names);
+        let written: Vec<String> = files(&folder.path().join(format));
+        assert_eq!(written, [&["membranes.json"], names].concat());
         for name in names {
             assert!(told.contains(&format!("{format}/{name}\n")), "{told}");
             assert!(fs::read(folder.path().join(format).join(name)).unwrap().starts_with(magic), "{name}");
@@ -360,11 +392,15 @@ fn converge_goes_on_from_the_levels_that_are_there() {
     assert_eq!((first.len(), more.len()), (2, 3));
     // The seconds in the rows tell that the first levels were kept, not computed again.
     assert_eq!(more[..2], first);
-    let expected = ["converge.toml", "convergence.md", "convergence.png", "summary.csv"];
+    let expected = ["convergence.md", "convergence.png", "membranes.json", "summary.csv"];
     assert_eq!(files(&folder.path().join("results")), expected);
 
     fs::write(folder.path().join("plates.toml"), KNOWN.replace("cells = 4", "cells = 5")).expect("writable");
-    let other = converge(2);
+    let refused = run(folder.path(), "converge plates.toml --levels 2 --out results");
+    assert_eq!(refused.code, Some(2), "another case does not take their place");
+    let told = run(folder.path(), "converge plates.toml --levels 2 --out results --overwrite -q");
+    told.success();
+    let other = levels(&fs::read_to_string(folder.path().join("results/summary.csv")).expect("it is there"));
     assert_eq!(other.len(), 2, "another case starts anew");
     assert_ne!(other[0], first[0]);
 }

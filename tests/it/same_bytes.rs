@@ -149,7 +149,7 @@ fn holes_and_levels_with_every_number_of_threads_and_again() {
     same_with(&LEVELS, &[1, 2, 3, 4]);
 }
 
-/// The twin: another load is seen in every file that depends on it, and in no other.
+/// The negative test: another load is seen in every file that depends on it, and in no other.
 #[test]
 fn another_load_is_seen() {
     let work = Work {

@@ -62,7 +62,6 @@ fn is_whole(name: &str, bytes: &[u8]) -> bool {
             columns.is_some() && text().ends_with('\n') && rows.all(|row| Some(row) == columns)
         }
         "md" => text().ends_with("|\n"),
-        "toml" => text().ends_with(CASE),
         other => panic!("{name}: nobody has said what is whole for {other:?}"),
     }
 }
@@ -210,7 +209,7 @@ fn a_time_limit_holds_whatever_the_solver_does() {
     let summary = |folder: &TempDir| -> Value {
         serde_json::from_slice(&results(folder.path())["summary.json"]).expect("JSON")
     };
-    // The twin: with time enough, it is solved.
+    // The negative test: with time enough, it is solved.
     let solved = folder_with(&square(512));
     run(solved.path(), "solve case.toml -q --backend multigrid --time-limit 600").success();
     assert!(results(solved.path()).contains_key("solution.vtu"));
@@ -225,14 +224,21 @@ fn a_time_limit_holds_whatever_the_solver_does() {
     }
     for (solver, limit) in solvers {
         let begin = Instant::now();
-        let stopped = run(folder.path(), &format!("solve case.toml --backend {solver} --time-limit {limit}"));
+        // In the case file it is the limit of the solve alone.
+        let limited = format!("{}[solver]\ntime_limit = {limit}\n", square(512));
+        fs::write(folder.path().join("case.toml"), limited).unwrap();
+        let stopped = run(folder.path(), &format!("solve case.toml --backend {solver}"));
         let seconds = begin.elapsed().as_secs_f64();
         assert_eq!(stopped.code, Some(1), "{solver}: {}", stopped.stderr);
         for word in ["does not certify", "time_limit", "more"] {
             assert!(stopped.stderr.contains(word), "{solver}: {}", stopped.stderr);
         }
         assert_eq!(stopped.stderr.lines().count(), 1);
-        assert_eq!(results(folder.path()).into_keys().collect::<Vec<_>>(), ["summary.json"], "{solver}");
+        assert_eq!(
+            results(folder.path()).into_keys().collect::<Vec<_>>(),
+            ["membranes.json", "summary.json"],
+            "{solver}"
+        );
         let summary = summary(&folder);
         assert_eq!(
             (&summary["status"], &summary["certified"]),
@@ -242,6 +248,24 @@ fn a_time_limit_holds_whatever_the_solver_does() {
         let before = ["mesh", "assembly"].map(|name| summary["seconds"][name].as_f64().expect(name));
         assert!(seconds - before[0] - before[1] < 1.1 * limit + BUSY.as_secs_f64(), "{solver}: {seconds} s");
     }
+}
+
+#[test]
+fn a_time_limit_of_the_command_covers_what_comes_before_the_solve() {
+    let folder = folder_with(&square(64));
+    for command in ["solve", "adapt"] {
+        let stopped = run(folder.path(), &format!("{command} case.toml --time-limit 1e-6"));
+        assert_eq!((stopped.code, stopped.stderr.lines().count()), (Some(1), 1), "{}", stopped.stderr);
+        assert!(
+            stopped.stderr.contains("before the first solve, and nothing is written"),
+            "{}",
+            stopped.stderr
+        );
+        assert_eq!(files(folder.path()), ["case.toml"]);
+    }
+    run(folder.path(), "solve case.toml -q --time-limit 1e19").success();
+    let summary: Value = serde_json::from_slice(&results(folder.path())["summary.json"]).expect("JSON");
+    assert_eq!(summary["left_out"], serde_json::json!([]));
 }
 
 #[test]
@@ -301,13 +325,15 @@ fn a_full_disk_loses_nothing_that_was_there() {
     for arguments in [
         "solve case.toml -q --dual",
         "adapt case.toml -q --tolerance 0.1",
-        "export case.toml -q --format mtx",
+        "export case.toml -q --format mtx --refine 2",
     ] {
         let folder = folder_with(CASE);
         run(folder.path(), arguments).success();
         let before = results(folder.path());
         assert!(before.len() >= 3, "{arguments}");
-        let finer = arguments.replace("case.toml", "case.toml --refine 1 --out out/case");
+        // Of another mesh where the folder allows it: levels and programs of another one are refused.
+        let further = if arguments.starts_with("solve") { " --refine 1" } else { "" };
+        let finer = arguments.replace("0.1", "0.05") + further;
         let failed = on_a_small_disk(folder.path(), 4, &finer);
         assert_eq!(failed.code, Some(2), "{arguments}: {}", failed.stderr);
         assert!(
@@ -317,7 +343,7 @@ fn a_full_disk_loses_nothing_that_was_there() {
         );
         let after = results(folder.path());
         let lost: Vec<_> = before.iter().filter(|(name, bytes)| after.get(*name) != Some(bytes)).collect();
-        // An adaptive run of another first mesh begins its levels anew.
+        // Levels are added to those that were there; the picture of them goes then.
         let levels = |name: &str| name.starts_with("adapt.") || name == "checkpoint.npz";
         assert!(lost.iter().all(|(name, _)| levels(name)), "{arguments}: {:?}", after.keys());
         assert!(after.keys().all(|name| !is_unfinished(name)), "{arguments}");

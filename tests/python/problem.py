@@ -1,6 +1,6 @@
 """The quadratic program (QP) that `membranes export` writes, read by numpy, scipy and HiGHS.
 
-    minimise 1/2 x'Px + q'x   subject to   A x >= b
+    minimise 1/2 x'Px + q'x + constant   subject to   A x >= b
 
 with the multiplier y >= 0 of the constraints and the stationarity P x + q = A'y. The unknowns are
 x = (u1, u2) on the n interior vertices.
@@ -25,7 +25,7 @@ Indices = NDArray[np.int64]
 
 @dataclass(frozen=True)
 class QuadraticProgram:
-    """Minimise 1/2 x'Px + q'x subject to A x >= b.
+    """Minimise 1/2 x'Px + q'x + constant subject to A x >= b.
 
     Shapes: `P` (N, N), the full symmetric matrix; `q` (N,); `A` (m, N); `b` (m,).
     """
@@ -34,10 +34,11 @@ class QuadraticProgram:
     q: Vector
     A: sp.csc_matrix
     b: Vector
+    constant: float = 0.0
 
     def energy(self, x: Vector) -> float:
-        """The objective 1/2 x'Px + q'x at `x`, shape (N,)."""
-        return float(0.5 * x @ (self.P @ x) + self.q @ x)
+        """The objective 1/2 x'Px + q'x + constant at `x`, shape (N,)."""
+        return float(0.5 * x @ (self.P @ x) + self.q @ x + self.constant)
 
     def without_row(self, row: int) -> QuadraticProgram:
         """The same QP without one of its m constraints."""
@@ -63,7 +64,8 @@ class ExportedProblem:
 def read_npz(directory: Path) -> ExportedProblem:
     """The problem in `directory/problem.npz`."""
     with np.load(directory / "problem.npz") as arrays:
-        qp = QuadraticProgram(_matrix(arrays, "P"), arrays["q"], _matrix(arrays, "A"), arrays["b"])
+        matrices = _matrix(arrays, "P"), arrays["q"], _matrix(arrays, "A")
+        qp = QuadraticProgram(*matrices, arrays["b"], float(arrays["constant"]))
         return ExportedProblem(
             qp, arrays["interior"], arrays["dual_area"], arrays["points"], arrays["triangles"]
         )
@@ -75,17 +77,18 @@ def _matrix(arrays: np.lib.npyio.NpzFile, name: str) -> sp.csc_matrix:
 
 
 def read_mtx(directory: Path) -> QuadraticProgram:
-    """The QP in the four MatrixMarket files `directory/problem_{P,A,q,b}.mtx`."""
+    """The QP in the five MatrixMarket files `directory/problem_{P,A,q,b,c}.mtx`."""
     matrices = {name: sp.csc_matrix(scipy.io.mmread(directory / f"problem_{name}.mtx")) for name in "PA"}
     vectors = {name: np.ravel(scipy.io.mmread(directory / f"problem_{name}.mtx")) for name in "qb"}
-    return QuadraticProgram(**matrices, **vectors)
+    constant = scipy.io.mmread(directory / "problem_c.mtx").item()
+    return QuadraticProgram(**matrices, **vectors, constant=constant)
 
 
 def read_qps(directory: Path) -> QuadraticProgram:
     """The QP in `directory/problem.qps`, read by HiGHS.
 
     Raises ValueError when HiGHS cannot read it or when it is not of the form above: bounded unknowns, rows
-    with an upper bound, a constant in the objective, or a maximisation.
+    with an upper bound, or a maximisation.
     """
     model = _read_by_highs(directory / "problem.qps")
     lp = model.lp_
@@ -93,11 +96,10 @@ def read_qps(directory: Path) -> QuadraticProgram:
         raise ValueError("problem.qps bounds an unknown: each of them has to be declared free (FR)")
     if not np.all(np.isposinf(lp.row_upper_)):
         raise ValueError("problem.qps bounds a row from above: each row has to be of type G")
-    if lp.offset_ != 0.0 or lp.sense_ != highspy.ObjSense.kMinimize:
-        raise ValueError("problem.qps has a constant in its objective or maximises it")
-    return QuadraticProgram(
-        _hessian(model.hessian_), np.array(lp.col_cost_), _constraints(lp), np.array(lp.row_lower_)
-    )
+    if lp.sense_ != highspy.ObjSense.kMinimize:
+        raise ValueError("problem.qps maximises its objective")
+    vectors = np.array(lp.col_cost_), _constraints(lp), np.array(lp.row_lower_)
+    return QuadraticProgram(_hessian(model.hessian_), *vectors, lp.offset_)
 
 
 # The least value that HiGHS accepts for its threshold: it drops entries of a matrix that are smaller.

@@ -64,10 +64,17 @@ class Program:
         directory = self.workspace / case.stem / f"solve-{refine}"
         self._run("solve", str(case), "--refine", str(refine), "--out", str(directory))
         mesh = meshio.read(directory / "solution.vtu")
-        fields = {name: np.ravel(mesh.point_data[name]) for name in ("u1", "u2", "gap", "lambda", "contact")}
+        fields = {name: mesh.point_data[name] for name in ("u1", "u2", "gap", "lambda", "contact")}
         summary = json.loads((directory / "summary.json").read_text(encoding="utf-8"))
-        triangles, indicator = mesh.cells_dict["triangle"], np.ravel(mesh.cell_data["error_indicator"][0])
+        triangles, indicator = mesh.cells_dict["triangle"], mesh.cell_data["error_indicator"][0]
         return ProgramSolution(mesh.points[:, :2], triangles, indicator, *fields.values(), summary)
+
+    @cache
+    def dual(self, case: Path) -> Path:
+        """The directory with the files of `solve --dual`."""
+        directory = self.workspace / case.stem / "dual"
+        self._run("solve", str(case), "--dual", "--out", str(directory))
+        return directory
 
     def _run(self, *arguments: str) -> None:
         command = [str(self.executable), *arguments]

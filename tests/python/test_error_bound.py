@@ -62,5 +62,5 @@ def test_the_bound_is_above_the_distance_to_a_much_finer_solution(program: Progr
     tension = read_case(case).tension
     bound, distance = coarse.summary["error_bound"], energy_distance(tension, finer, coarse)
     assert bound >= distance
-    # The negative twin: with an error twice as large, it would be below.
+    # The negative test: with an error twice as large, it would be below.
     assert bound < 2.0 * distance

@@ -1,13 +1,13 @@
 //! The bound triangle by triangle.
 
-use std::f64::consts::PI;
-
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 use super::trace::Trace;
 use crate::discretization::Discretization;
+use crate::estimate::MeasureError;
 use crate::fem::{ElementMoments, gradient};
 use crate::flux::WedgeFluxes;
+use crate::geometry::poincare;
 
 /// Triangles that are summed together.
 const BLOCK: usize = 4096;
@@ -41,7 +41,7 @@ pub(super) struct Sums {
     pub(super) flux_sq: f64,
     pub(super) oscillation_sq: f64,
     /// Of the change that makes the gap non-negative.
-    pub(super) mended_sq: f64,
+    pub(super) feasible_sq: f64,
     /// Of the lift of `g - g_h`, and of what lies beyond the mesh.
     pub(super) boundary_sq: f64,
     /// `|||u_h|||^2`.
@@ -59,7 +59,7 @@ impl Sums {
             overlap: self.overlap + other.overlap,
             flux_sq: self.flux_sq + other.flux_sq,
             oscillation_sq: self.oscillation_sq + other.oscillation_sq,
-            mended_sq: self.mended_sq + other.mended_sq,
+            feasible_sq: self.feasible_sq + other.feasible_sq,
             boundary_sq: self.boundary_sq + other.boundary_sq,
             energy_sq: self.energy_sq + other.energy_sq,
         }
@@ -72,45 +72,62 @@ impl Sums {
 }
 
 impl Cells<'_> {
+    /// The sides of a rectangle around the domain: that of the circle where the bound reaches up to it, else that of the mesh.
+    pub(super) fn sides(&self) -> [f64; 2] {
+        let (lower, upper) = self.d.mesh().bounding_box();
+        match self.trace.circle {
+            Some(circle) => [2.0 * circle.radius; 2],
+            None => [upper[0] - lower[0], upper[1] - lower[1]],
+        }
+    }
+
     /// The sums over all triangles, added in an order that does not depend on the number of threads, and the squared
     /// indicators.
-    pub(super) fn sum(&self) -> (Sums, Vec<f64>) {
+    ///
+    /// # Errors
+    /// When the data have no value on the boundary: the first in the order of the triangles.
+    pub(super) fn sum(&self) -> Result<(Sums, Vec<f64>), MeasureError> {
         let mut indicators = vec![0.0; self.d.mesh().triangles().len()];
         let on_block = |(block, indicators): (usize, &mut [f64])| {
             let mut sums = Sums::default();
             for (k, indicator) in indicators.iter_mut().enumerate() {
-                let on_triangle = self.on_triangle(block * BLOCK + k);
+                let on_triangle = self.on_triangle(block * BLOCK + k)?;
                 *indicator = on_triangle.indicator_sq();
                 sums = sums.plus(on_triangle);
             }
-            sums
+            Ok(sums)
         };
-        let blocks: Vec<Sums> = indicators.par_chunks_mut(BLOCK).enumerate().map(on_block).collect();
-        (blocks.into_iter().fold(Sums::default(), Sums::plus), indicators)
+        let blocks: Vec<Result<Sums, MeasureError>> =
+            indicators.par_chunks_mut(BLOCK).enumerate().map(on_block).collect();
+        let mut sums = Sums::default();
+        for block in blocks {
+            sums = sums.plus(block?);
+        }
+        Ok((sums, indicators))
     }
 
-    fn on_triangle(&self, k: usize) -> Sums {
+    fn on_triangle(&self, k: usize) -> Result<Sums, MeasureError> {
         let (flux_sq, oscillation) = (self.fluxes.distance_sq(k), self.oscillation(k));
-        let (mended_sq, lift) = (self.mended_sq(k), self.trace.lift(k, self.lambda));
+        let (feasible_sq, lift) = (self.feasible_sq(k), self.trace.lift(k, self.lambda)?);
         let (contact, overlap) = self.contact(k);
         let mut sums = Sums { contact: contact + lift.action, overlap, ..Sums::default() };
         for (i, mu) in self.d.tension().into_iter().enumerate() {
             let lift_sq = if i == 0 { mu * lift.seminorm_sq } else { 0.0 };
-            let beyond_sq = self.trace.beyond_sq(i, k, &self.fluxes);
+            let beyond_sq = self.trace.beyond_sq(i, k, &self.fluxes)?;
             let flux_sq = flux_sq[i] / mu;
             let oscillation_sq = oscillation[i].powi(2) / mu;
             let a = flux_sq.sqrt() + oscillation_sq.sqrt();
-            let b = mended_sq[i].sqrt() + lift_sq.sqrt();
+            let b = feasible_sq[i].sqrt() + lift_sq.sqrt();
             sums.indicators_sq[i] = (a + b).powi(2) + beyond_sq;
             sums.products += a * b;
             sums.changes_sq[i] = b * b;
             sums.flux_sq += flux_sq;
             sums.oscillation_sq += oscillation_sq;
-            sums.mended_sq += mended_sq[i];
+            sums.feasible_sq += feasible_sq[i];
             sums.boundary_sq += lift_sq + beyond_sq;
             sums.energy_sq += mu * self.seminorm_sq(k, |a| self.displacement[i][a]);
         }
-        sums
+        Ok(sums)
     }
 
     /// `h_K / pi ||r_i - rho_i||_K`, where on the wedge at `a` the residual is `f_i` less its share `f_a|_K`: at most
@@ -122,12 +139,12 @@ impl Cells<'_> {
             let ElementMoments { integrals, deviation } = self.d.moments[i].on(self.d.mesh(), k);
             let mean = integrals.iter().sum::<f64>() / area;
             let shares_sq: f64 = integrals.iter().map(|f| (3.0 * f / area - mean).powi(2)).sum();
-            diameter / PI * (deviation + (5.0 / 9.0 * area * shares_sq).sqrt())
+            poincare(diameter) * (deviation + (5.0 / 9.0 * area * shares_sq).sqrt())
         })
     }
 
     /// `mu_i |c_i|_{H1(K)}^2` for the changes `c_1 = (mu2 / M) w^-` and `c_2 = -(mu1 / M) w^-` that make the gap non-negative.
-    fn mended_sq(&self, k: usize) -> [f64; 2] {
+    fn feasible_sq(&self, k: usize) -> [f64; 2] {
         let overlap = |a: usize| (self.displacement[1][a] - self.displacement[0][a]).max(0.0);
         if self.d.mesh().triangles()[k].iter().all(|&a| overlap(a) == 0.0) {
             return [0.0; 2];

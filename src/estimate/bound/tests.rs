@@ -1,15 +1,15 @@
 //! The bound against true errors, and its parts against their definitions.
 
 mod identity;
+#[cfg(feature = "clarabel")]
 mod never_below;
 mod parts;
 mod rounding;
 
 use super::ErrorBound;
 use crate::discretization::Discretization;
-use crate::estimate::energy_error as measure;
 use crate::estimate::norms::cut_rule;
-use crate::problem::{ContactProblem, Domain, ExactSolution};
+use crate::problem::{ContactProblem, Domain};
 
 /// The bound on the mesh's polygon, or on the disk.
 fn bound(
@@ -19,9 +19,4 @@ fn bound(
     displacement: &[Vec<f64>; 2],
 ) -> ErrorBound {
     ErrorBound::new(problem, Some(domain), d, displacement).unwrap()
-}
-
-/// `|||u - u_h|||` of any displacements.
-fn energy_error(d: &Discretization, displacement: &[Vec<f64>; 2], exact: &ExactSolution) -> f64 {
-    measure(d, displacement, exact).unwrap()
 }

@@ -1,10 +1,11 @@
 //! What the boundary adds to the bound: data between the vertices, and a circle beyond the polygon of the mesh.
 
 use crate::discretization::Discretization;
+use crate::estimate::MeasureError;
 use crate::flux::WedgeFluxes;
 use crate::geometry::distance_sq;
 use crate::mesh::{Circle, Mesh, VertexKind, VertexTriangles};
-use crate::problem::{ContactProblem, Domain, Function};
+use crate::problem::{ContactProblem, Domain, EvaluationError, Function};
 
 /// A boundary vertex lies on the circle up to this fraction of the radius: rounding of its coordinates.
 const ON_CIRCLE: f64 = 1e-9;
@@ -31,7 +32,8 @@ pub(super) struct Trace<'a> {
     mesh: &'a Mesh,
     around: &'a VertexTriangles,
     height_h: &'a [f64],
-    circle: Option<Circle>,
+    /// The circle around a disk, if the mesh has all its boundary vertices on it.
+    pub(super) circle: Option<Circle>,
 }
 
 /// A lift `E` of the data between the vertices.
@@ -76,10 +78,13 @@ impl<'a> Trace<'a> {
     /// at that point times a power of what is left of the ray. The apex is the opposite corner; of a triangle with several
     /// boundary edges its barycentre, so that the lifts do not meet. The gap stays non-negative: at the part `r` of the ray it is at
     /// least `r g_h`, and the lift takes away at most `r^3 g_h`.
-    pub(super) fn lift(&self, k: usize, lambda: &[f64]) -> Lift {
+    ///
+    /// # Errors
+    /// When the height has no value on the edges.
+    pub(super) fn lift(&self, k: usize, lambda: &[f64]) -> Result<Lift, MeasureError> {
         let mut sum = Lift::default();
         if self.circle.is_none() && matches!(self.problem.height(), Function::Constant(_)) {
-            return sum;
+            return Ok(sum);
         }
         let corners = self.mesh.corners(k);
         let several = self.boundary_edges(k).count() > 1;
@@ -88,15 +93,16 @@ impl<'a> Trace<'a> {
         let largest_action = self.mesh.triangles()[k].iter().map(|&a| lambda[a]).fold(0.0, f64::max);
         for corner in self.boundary_edges(k) {
             let apex = if several { barycentre } else { corners[(corner + 2) % 3] };
-            let (seminorm_sq, positive) = self.lift_from_edge(k, corner, apex);
+            let (seminorm_sq, positive) =
+                self.lift_from_edge(k, corner, apex).map_err(MeasureError::of_height)?;
             sum.seminorm_sq += seminorm_sq;
             sum.action += largest_action * positive;
         }
-        sum
+        Ok(sum)
     }
 
     /// `|E|_{H1}^2` and `int max(E, 0)`.
-    fn lift_from_edge(&self, k: usize, corner: usize, apex: [f64; 2]) -> (f64, f64) {
+    fn lift_from_edge(&self, k: usize, corner: usize, apex: [f64; 2]) -> Result<(f64, f64), EvaluationError> {
         let edge = self.edge(k, corner);
         let [first, last] = [0, 1].map(|j| self.height_h[self.mesh.triangles()[k][(corner + j) % 3]]);
         let from_apex = [edge.from[0] - apex[0], edge.from[1] - apex[1]];
@@ -104,44 +110,54 @@ impl<'a> Trace<'a> {
         let foot = dot(from_apex, edge.tangent);
         let (mut seminorm_sq, mut positive) = (0.0, 0.0);
         for (_, t, weight) in halves() {
-            let value = edge.height(self.problem.height(), t) - (first + t * (last - first));
-            let slope = (edge.height_slope(self.problem.height(), t) - (last - first)) / edge.length;
+            let value = edge.height(self.problem.height(), t)? - (first + t * (last - first));
+            let slope = (edge.height_slope(self.problem.height(), t)? - (last - first)) / edge.length;
             // At the edge; at the part r of the ray from the apex, r^(DECAY - 1) times that.
             let across = (DECAY * value - (foot + t * edge.length) * slope) / distance;
             let weight = weight * edge.length * distance;
             seminorm_sq += weight / (2.0 * DECAY) * (slope * slope + across * across);
             positive += weight / (DECAY + 2.0) * value.max(0.0);
         }
-        (seminorm_sq, positive)
+        Ok((seminorm_sq, positive))
     }
 
     /// `|| mu_i^(1/2) grad u_i + mu_i^(-1/2) sigma_i ||^2` between the boundary edges of triangle `k` and the circle.
-    pub(super) fn beyond_sq(&self, membrane: usize, k: usize, fluxes: &WedgeFluxes) -> f64 {
+    ///
+    /// # Errors
+    /// When height or load have no value there.
+    pub(super) fn beyond_sq(
+        &self,
+        membrane: usize,
+        k: usize,
+        fluxes: &WedgeFluxes,
+    ) -> Result<f64, MeasureError> {
+        let mut sum = 0.0;
         if self.circle.is_none() {
-            return 0.0;
+            return Ok(sum);
         }
         let mu = self.problem.tension()[membrane];
-        let of_edge = |corner: usize| {
+        let load = &self.problem.load()[membrane];
+        for corner in self.boundary_edges(k) {
             let edge = self.edge(k, corner);
             let outward = fluxes.boundary_outward(membrane, k, corner);
-            let at = |(half, t, weight): (usize, f64, f64)| {
+            for (half, t, along) in halves() {
                 let trace = outward[half] / (0.5 * edge.length);
                 let slope = if membrane == 0 {
-                    edge.height_slope(self.problem.height(), t) / edge.length
+                    let slope = edge.height_slope(self.problem.height(), t);
+                    slope.map_err(MeasureError::of_height)? / edge.length
                 } else {
                     0.0
                 };
                 let depth = edge.depth(t);
-                let square = |(s, weight): (f64, f64)| {
+                for (s, weight) in GAUSS {
                     let [x, y] = edge.above(t, 0.5 * s * depth);
-                    let flux = trace + s * depth * self.problem.load()[membrane].eval(x, y);
-                    weight * (mu * slope * slope + flux * flux / mu)
-                };
-                weight * edge.length * depth * GAUSS.into_iter().map(square).sum::<f64>()
-            };
-            halves().map(at).sum::<f64>()
-        };
-        self.boundary_edges(k).map(of_edge).sum()
+                    let f = load.eval(x, y).map_err(|source| MeasureError::of_load(membrane, source))?;
+                    let flux = trace + s * depth * f;
+                    sum += along * edge.length * depth * weight * (mu * slope * slope + flux * flux / mu);
+                }
+            }
+        }
+        Ok(sum)
     }
 
     /// The corners of triangle `k` from which a boundary edge leads to the next corner.
@@ -180,14 +196,14 @@ impl Edge {
     }
 
     /// The data on the boundary of the domain, seen from the edge.
-    fn height(&self, g: &Function, t: f64) -> f64 {
+    fn height(&self, g: &Function, t: f64) -> Result<f64, EvaluationError> {
         let [x, y] = self.above(t, self.depth(t));
         g.eval(x, y)
     }
 
     /// Its derivative for `t`.
-    fn height_slope(&self, g: &Function, t: f64) -> f64 {
-        (self.height(g, t + STEP) - self.height(g, t - STEP)) / (2.0 * STEP)
+    fn height_slope(&self, g: &Function, t: f64) -> Result<f64, EvaluationError> {
+        Ok((self.height(g, t + STEP)? - self.height(g, t - STEP)?) / (2.0 * STEP))
     }
 }
 

@@ -70,7 +70,7 @@ fn the_iteration_agrees_with_a_direct_solve() {
     for mesh in [square(1), square(2), irregular(5), l_shape(1.0, 3, Default::default()).unwrap()] {
         let norm = norm_on(&mesh, 1, rho);
         let sub = SubTriangulation::new(&mesh).unwrap();
-        let fine = sub.mesh().refine().mesh;
+        let fine = sub.mesh().refine().unwrap().mesh;
         for (mesh, figure) in [(sub.mesh(), norm.coarser), (&fine, norm.value)] {
             let free: Vec<usize> =
                 (0..mesh.points().len()).filter(|&a| mesh.kind()[a] == VertexKind::Interior).collect();
@@ -91,10 +91,11 @@ fn functionals_are_restricted_to_what_they_are_on_the_coarse_mesh() {
     let mesh = irregular(4);
     let d = Discretization::new(&at_rest(), mesh.clone()).unwrap();
     let sub = SubTriangulation::new(&mesh).unwrap();
-    let (spaces, finest) = Multigrid::new(&d, &sub, 1).unwrap();
+    let (spaces, finest) = Spaces::new(&d, &sub, 1).unwrap();
     let [fine, change] = functionals(&finest, &plain(), rho);
-    let on_sub = spaces.restrict(2, &fine);
-    let on_mesh = spaces.restrict(1, &on_sub);
+    let on_sub = spaces.restrict(&spaces.functional(&fine));
+    let on_mesh = spaces.restrict(&on_sub);
+    let [on_sub, on_mesh] = [on_sub, on_mesh].map(|functional| functional.over_vertices(&spaces));
     for (restricted, mesh) in [(on_sub, sub.mesh()), (on_mesh, &mesh)] {
         let [direct, _] = functionals(mesh, &plain(), rho);
         for (a, b) in restricted.iter().zip(&direct) {
@@ -142,11 +143,12 @@ fn figures(
     rule: &CutRule,
     rho: impl Fn(usize, [f64; 2]) -> f64 + Sync,
 ) -> [f64; 3] {
-    let (spaces, mesh) = Multigrid::new(d, sub, 1).unwrap();
+    let (spaces, mesh) = Spaces::new(d, sub, 1).unwrap();
     let [fine, _] = functionals(&mesh, rule, |t, point| rho(t / 4, point));
-    let on_sub = spaces.restrict(2, &fine);
-    let on_mesh = spaces.restrict(1, &on_sub);
-    [(0, on_mesh), (1, on_sub), (2, fine)].map(|(level, rho)| spaces.dual_norm(level, &rho).unwrap())
+    let fine = spaces.functional(&fine);
+    let on_sub = spaces.restrict(&fine);
+    let on_mesh = spaces.restrict(&on_sub);
+    [on_mesh, on_sub, fine].map(|rho| spaces.dual_norm(&rho).unwrap())
 }
 
 /// `60 b - 1` with the bubble `b`, the product of the barycentric coordinates, is orthogonal to the affine functions of

@@ -130,7 +130,7 @@ fn the_share_of_a_wedge_is_the_load_weighted_by_the_hat_function() {
             let terms = DEGREE_4.points.iter().zip(DEGREE_4.weights);
             let term = |(b, weight): (&[f64; 3], &f64)| {
                 let [x, y] = [0, 1].map(|axis| (0..3).map(|j| b[j] * corners[j][axis]).sum::<f64>());
-                weight * b[i].powi(power) * problem.load()[0].eval(x, y)
+                weight * b[i].powi(power) * problem.load()[0].eval(x, y).unwrap()
             };
             terms.map(term).sum::<f64>()
         };

@@ -22,6 +22,15 @@ impl Kind {
         }
     }
 
+    /// The dimension of an element.
+    pub(super) fn dimension(self) -> u8 {
+        match self {
+            Self::Point => 0,
+            Self::Line => 1,
+            Self::Triangle => 2,
+        }
+    }
+
     /// Reads the number that Gmsh gives to a kind of elements (`GmshDefines.h`).
     pub(super) fn read(scanner: &mut Scanner) -> Result<Self, GmshError> {
         let code = scanner.int("an element type")?;

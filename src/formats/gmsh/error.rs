@@ -24,22 +24,29 @@ impl fmt::Display for Place {
 
 /// Why a Gmsh file cannot be used. Every message is one line and says what to do.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
 pub enum GmshError {
-    /// The file does not begin with `$MeshFormat`.
+    /// No `$MeshFormat` before the mesh.
     #[error(
-        "not a Gmsh mesh: the file does not begin with $MeshFormat; \
+        "not a Gmsh mesh: there is no section $MeshFormat before the mesh; \
          make a mesh with `gmsh -2 -format msh41 -o plate.msh plate.geo`"
     )]
     NotGmsh,
-    /// A version other than 2.2 and 4.1.
+    /// A version other than 2.0 to 2.2, 4.0 and 4.1.
     #[error(
-        "MSH version {found} is not read, only 2.2 and 4.1; \
+        "MSH version {found} is not read, only 2 to 2.2, 4.0 and 4.1; \
          convert the file with `gmsh old.msh -save -format msh41 -o new.msh`"
     )]
     Version {
         /// The version that the file declares.
         found: String,
     },
+    /// A binary file of MSH 4.0.
+    #[error(
+        "binary MSH 4.0 is not read, not even by Gmsh itself: \
+         mesh the geometry again with `gmsh -2 -format msh41 -o plate.msh plate.geo`"
+    )]
+    Binary40,
     /// Numbers of a size other than 8 bytes.
     #[error("numbers of {found} bytes are not read, only of 8; write the file with a 64-bit Gmsh")]
     DataSize {
@@ -87,23 +94,6 @@ pub enum GmshError {
         /// Bytes from there to the end of the file.
         left: usize,
     },
-    /// The blocks of a section do not add up to the number at its head.
-    #[error(
-        "{place}, ${section}: {declared} {of} are declared, but its blocks hold {found}; \
-         the file is damaged: write it again with Gmsh"
-    )]
-    Total {
-        /// Where the section ends.
-        place: Place,
-        /// Name of the section.
-        section: String,
-        /// What is counted.
-        of: &'static str,
-        /// The number at the head of the section.
-        declared: usize,
-        /// The number in the blocks.
-        found: usize,
-    },
     /// `$Nodes` or `$Elements` twice.
     #[error("{place}: a second section ${section}; put one mesh into a file")]
     RepeatedSection {
@@ -118,9 +108,6 @@ pub enum GmshError {
     /// No `$Elements`.
     #[error("there is no section $Elements; mesh the surface (`gmsh -2`) and write the file again with Gmsh")]
     MissingElements,
-    /// MSH 2.2 with parameters of the nodes.
-    #[error("$ParametricNodes are not read; write the file with Mesh.SaveParametric = 0, or as MSH 4.1")]
-    ParametricNodes,
     /// A coordinate that is infinite or no number.
     #[error("{place}, $Nodes: node {node} has a coordinate {value}; every coordinate must be finite")]
     NotFinite {

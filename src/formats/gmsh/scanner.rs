@@ -78,23 +78,30 @@ impl<'a> Scanner<'a> {
 
 /// Sections.
 impl<'a> Scanner<'a> {
-    /// Reads the line `$Name` that opens a section; `None` at the end of the file.
+    /// Goes to the next section and reads the `$Name` that opens it; `None` at the end of the file. As for Gmsh, other lines
+    /// between sections are comments.
     pub(super) fn open_section(&mut self) -> Result<Option<&'a str>, GmshError> {
-        self.skip_while(|b| b.is_ascii_whitespace());
-        if self.rest().is_empty() {
-            return Ok(None);
+        loop {
+            self.skip_while(|b| b.is_ascii_whitespace());
+            let start = self.at;
+            match self.rest() {
+                [] => return Ok(None),
+                [b'$', next, ..] if !next.is_ascii_whitespace() => {}
+                _ => {
+                    self.rest_of_line();
+                    continue;
+                }
+            }
+            let expected = "the next section, or the end of the file";
+            let word = self.word(expected)?;
+            let name = &word[1..];
+            if name.starts_with("End") {
+                self.at = start;
+                return Err(self.unexpected(expected, word));
+            }
+            (self.section, self.opened_at) = (name, start);
+            return Ok(Some(name));
         }
-        let expected = "the next section, or the end of the file";
-        let start = self.at;
-        let word = self.word(expected)?;
-        let Some(name) = word.strip_prefix('$').filter(|name| !name.is_empty() && !name.starts_with("End"))
-        else {
-            self.at = start;
-            return Err(self.unexpected(expected, word));
-        };
-        (self.section, self.opened_at) = (name, start);
-        self.end_line()?;
-        Ok(Some(name))
     }
 
     /// Reads the line `$EndName` that closes the section.
@@ -128,11 +135,6 @@ impl<'a> Scanner<'a> {
         Err(self.syntax_error(&format!("`{}`", excerpt(&closing)), "the end of the file".into()))
     }
 
-    /// The error of a section whose blocks hold another number of records than it declares.
-    pub(super) fn wrong_total(&self, of: &'static str, declared: usize, found: usize) -> GmshError {
-        GmshError::Total { place: self.place(), section: excerpt(self.section), of, declared, found }
-    }
-
     /// The error of a section that was given before.
     pub(super) fn repeated_section(&self) -> GmshError {
         GmshError::RepeatedSection { place: self.place_of(self.opened_at), section: excerpt(self.section) }
@@ -162,6 +164,21 @@ impl<'a> Scanner<'a> {
         word.parse().map_err(|_| self.unexpected(expected, word))
     }
 
+    /// Reads what is left of the line, and goes to the next one.
+    pub(super) fn rest_of_line(&mut self) -> &'a [u8] {
+        let rest = self.rest();
+        let length = rest.iter().position(|&b| b == b'\n').unwrap_or(rest.len());
+        self.at += (length + 1).min(rest.len());
+        &rest[..length]
+    }
+
+    /// Goes over blanks and the ends of lines of an ASCII file.
+    pub(super) fn skip_blank(&mut self) {
+        if self.encoding == Encoding::Ascii {
+            self.skip_while(|b| b.is_ascii_whitespace());
+        }
+    }
+
     /// Ends a line: nothing but blanks may be left of it. In an ASCII file empty lines behind it are skipped.
     pub(super) fn end_line(&mut self) -> Result<(), GmshError> {
         self.skip_while(|b| matches!(b, b' ' | b'\t' | b'\r'));
@@ -173,9 +190,7 @@ impl<'a> Scanner<'a> {
                 return Err(self.unexpected("the end of the line", word));
             }
         }
-        if self.encoding == Encoding::Ascii {
-            self.skip_while(|b| b.is_ascii_whitespace());
-        }
+        self.skip_blank();
         Ok(())
     }
 }

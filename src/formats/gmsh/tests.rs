@@ -64,6 +64,8 @@ const VALID: &[Valid] = &[
     valid!("periodic_view_41_binary", 15, 18, RECTANGLE, 1),
     valid!("parametric_41_ascii", 15, 18, RECTANGLE, 1),
     valid!("parametric_41_binary", 15, 18, RECTANGLE, 1),
+    valid!("parametric_22", 15, 18, RECTANGLE, 1),
+    valid!("version_40", 25, 34, RECTANGLE, 1),
     valid!("partitioned_22", 15, 18, RECTANGLE, 1),
     valid!("partitioned_41_ascii", 15, 18, RECTANGLE, 1),
     valid!("partitioned_41_binary", 15, 18, RECTANGLE, 1),
@@ -125,10 +127,12 @@ fn every_file_has_its_nodes_triangles_area_and_topology() {
 }
 
 #[test]
-fn the_four_encodings_give_the_same_triangulation() {
+fn all_encodings_give_the_same_triangulation() {
     let reference = read(file!("rectangle_41_binary"));
-    for other in [file!("rectangle_41_ascii"), file!("rectangle_22_ascii"), file!("rectangle_22_binary")] {
-        assert!(same(&reference, &read(other)));
+    for other in ["rectangle_41_ascii", "rectangle_22_ascii", "rectangle_22_binary", "version_40"] {
+        let file = VALID.iter().find(|file| file.name == other).expect("it is valid");
+        assert!(same(&reference, &read(file.bytes)), "{other}");
+        assert_eq!(read(file.bytes).groups, reference.groups, "{other}");
     }
     let text = String::from_utf8(file!("rectangle_41_ascii").to_vec()).expect("ASCII");
     for (from, to) in [("0.2999999999993066", "0.2999999999993166"), ("\n18 6 13 20", "\n18 6 20 13")] {
@@ -145,7 +149,7 @@ fn sections_around_the_mesh_do_not_change_it() {
     let parts = read(file!("partitioned_41_binary"));
     assert!(same(&parts, &read(file!("partitioned_41_ascii"))));
     let plain = read(file!("two_groups_41"));
-    for parametric in [file!("parametric_41_ascii"), file!("parametric_41_binary")] {
+    for parametric in [file!("parametric_41_ascii"), file!("parametric_41_binary"), file!("parametric_22")] {
         assert_eq!(read(parametric).triangles, plain.triangles);
     }
     assert_ne!(parts.node_tags, plain.node_tags);
@@ -160,6 +164,33 @@ fn a_surface_in_two_groups_is_taken_once_from_msh_22() {
         // Ten lines come first, and each triangle takes two tags.
         assert_eq!(mesh.element_tags, (0..18).map(|k| 11 + 2 * k).collect::<Vec<_>>());
     }
+}
+
+/// The groups of a file, a word for each: dimension, tag and name.
+fn groups(bytes: &[u8]) -> Vec<String> {
+    let groups = read(bytes).groups;
+    groups.iter().map(|group| format!("{} {} {group}", group.dimension, group.tag)).collect()
+}
+
+#[test]
+fn groups_have_their_names_in_every_encoding() {
+    let of_rectangle = ["0 3 gauge", "1 2 clamped edge", "1 4 stiffener", "2 1 membrane"];
+    let of_two = ["1 2 clamped edge", "2 1 membrane", "2 3 steel"];
+    for file in VALID {
+        let found = groups(file.bytes);
+        match file.name {
+            name if name.starts_with("rectangle") || name == "version_40" => assert_eq!(found, of_rectangle),
+            name if name.starts_with("two_groups") => assert_eq!(found, of_two),
+            name if name.starts_with("partitioned") => assert_eq!(found, of_two[..2], "{name}"),
+            name if name.starts_with("no_groups") || name.starts_with("sparse") => assert!(found.is_empty()),
+            _ => {}
+        }
+    }
+    let text = String::from_utf8(file!("rectangle_41_ascii").to_vec()).expect("ASCII");
+    let (front, behind) = text.split_once("$PhysicalNames").expect("there are names");
+    let (_, behind) = behind.split_once("$EndPhysicalNames").expect("they end");
+    let unnamed = ["0 3 points 3", "1 2 curves 2", "1 4 curves 4", "2 1 surfaces 1"];
+    assert_eq!(groups((front.to_owned() + behind).as_bytes()), unnamed);
 }
 
 #[test]
@@ -194,7 +225,6 @@ fn line_ends_of_windows_and_empty_lines_are_read() {
 fn files_without_a_plane_triangulation_are_refused_with_a_remedy() {
     let table = [
         (file!("version_1"), "MSH version 1 is not read", "gmsh old.msh -save -format msh41"),
-        (file!("version_40"), "MSH version 4 is not read", "gmsh old.msh -save -format msh41"),
         (
             file!("quadrangles_41"),
             "line 91, $Elements: quadrangles (element type 3)",
@@ -213,7 +243,6 @@ fn files_without_a_plane_triangulation_are_refused_with_a_remedy() {
         (file!("not_flat_22"), "not flat", "plane z = constant"),
         (file!("only_curves_41"), "no triangle among the elements (10 points and lines)", "Mesh.SaveAll = 1"),
         (file!("only_curves_22"), "no triangle among the elements (10 points and lines)", "Mesh.SaveAll = 1"),
-        (file!("parametric_22"), "$ParametricNodes are not read", "Mesh.SaveParametric = 0"),
     ];
     for (bytes, reason, remedy) in table {
         let message = refused(bytes);

@@ -1,27 +1,47 @@
-//! `$Nodes` and `$Elements` of MSH 2.2, where every record stands for itself and every whole number is an `int`.
+//! `$Nodes` and `$Elements` of MSH 2, where every record stands for itself and every whole number is an `int`. The versions 2.0,
+//! 2.1 and 2.2 differ in labels that are not read.
 
 use super::elements::{Elements, Kind};
 use super::error::GmshError;
+use super::groups::Groups;
 use super::nodes::{Nodes, read_point};
 use super::scanner::{Encoding, Scanner};
 
-/// Reads the nodes: their number, then `tag x y z` for each.
-pub(super) fn nodes(scanner: &mut Scanner) -> Result<Nodes, GmshError> {
+/// Reads the nodes: their number, then `tag x y z` for each; in `$ParametricNodes` with `dimension entity parameters` behind.
+pub(super) fn nodes(scanner: &mut Scanner, parametric: bool) -> Result<Nodes, GmshError> {
     let declared = head(scanner, "nodes")?;
     let (mut tags, mut points, mut heights) = (Vec::new(), Vec::new(), Vec::new());
     for _ in 0..declared {
         let tag = read_tag(scanner, "a node tag")?;
         read_point(scanner, tag, &mut points, &mut heights)?;
+        if parametric {
+            skip_parameters(scanner)?;
+        }
         scanner.end_record()?;
         tags.push(tag);
     }
     Nodes::new(tags, points, heights)
 }
 
+/// A node in a curve has one parameter, in a surface two.
+fn skip_parameters(scanner: &mut Scanner) -> Result<(), GmshError> {
+    let dimension = scanner.int("the dimension of an entity")?;
+    scanner.int("the tag of an entity")?;
+    let parameters = if matches!(dimension, 1 | 2) { dimension } else { 0 };
+    for _ in 0..parameters {
+        scanner.double("a parameter of a node")?;
+    }
+    Ok(())
+}
+
 /// Reads the elements: their number, then one by one (ASCII) or in runs of one kind (binary).
-pub(super) fn elements(scanner: &mut Scanner, nodes: &Nodes) -> Result<Elements, GmshError> {
+pub(super) fn elements(
+    scanner: &mut Scanner,
+    nodes: &Nodes,
+    groups: &mut Groups,
+) -> Result<Elements, GmshError> {
     let declared = head(scanner, "elements")?;
-    let mut reader = Reader { scanner, nodes, elements: Elements::default() };
+    let mut reader = Reader { scanner, nodes, groups, elements: Elements::default() };
     match reader.scanner.encoding() {
         Encoding::Ascii => {
             for _ in 0..declared {
@@ -55,6 +75,7 @@ fn read_tag(scanner: &mut Scanner, expected: &str) -> Result<u64, GmshError> {
 struct Reader<'s, 'a> {
     scanner: &'s mut Scanner<'a>,
     nodes: &'s Nodes,
+    groups: &'s mut Groups,
     elements: Elements,
 }
 
@@ -89,10 +110,13 @@ impl Reader<'_, '_> {
         self.scanner.count(declared, "labels of an element")
     }
 
-    /// Skips the labels (physical group, surface, partitions) and takes the nodes.
+    /// Takes the first label, the physical group, skips the others (surface, partitions) and takes the nodes.
     fn labels_and_nodes(&mut self, element: u64, kind: Kind, labels: usize) -> Result<(), GmshError> {
-        for _ in 0..labels {
-            self.scanner.int("a label of an element")?;
+        for label in 0..labels {
+            let value = self.scanner.int("a label of an element")?;
+            if label == 0 {
+                self.groups.add(kind.dimension(), value);
+            }
         }
         let mut vertices = [0; 3];
         for vertex in &mut vertices[..kind.nodes()] {

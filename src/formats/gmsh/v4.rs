@@ -1,17 +1,24 @@
-//! `$Nodes` and `$Elements` of MSH 4.1, one block for each entity of the geometry.
+//! `$Nodes` and `$Elements` of MSH 4, one block for each entity of the geometry.
 
 use super::elements::{Elements, Kind};
 use super::error::GmshError;
 use super::nodes::{Nodes, read_point};
 use super::scanner::Scanner;
 
-/// Reads the nodes. A block holds all its tags, then all its points, which may carry parameters behind `z`.
-pub(super) fn nodes(scanner: &mut Scanner) -> Result<Nodes, GmshError> {
-    let head = Head::read(scanner, "nodes")?;
+/// The two layouts of MSH 4.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Layout {
+    /// MSH 4.0: each node on one line with its tag, and the tag of an entity before its dimension.
+    V40,
+    /// MSH 4.1: in a block all tags come first.
+    V41,
+}
+
+/// Reads the nodes. They may carry parameters behind `z`.
+pub(super) fn nodes(scanner: &mut Scanner, layout: Layout) -> Result<Nodes, GmshError> {
     let (mut tags, mut points, mut heights) = (Vec::new(), Vec::new(), Vec::new());
-    for _ in 0..head.blocks {
-        let dimension = scanner.int("the dimension of an entity")?;
-        scanner.int("the tag of an entity")?;
+    for _ in 0..read_head(scanner, layout)? {
+        let dimension = read_entity(scanner, layout)?;
         let parametric = scanner.int("0, or 1 for nodes with parameters")?;
         let parameters = match (parametric, dimension) {
             (0, _) => 0,
@@ -24,30 +31,31 @@ pub(super) fn nodes(scanner: &mut Scanner) -> Result<Nodes, GmshError> {
         let length = read_count(scanner, "nodes of a block")?;
         scanner.end_record()?;
         let first = tags.len();
-        for _ in 0..length {
-            tags.push(scanner.size("a node tag")?);
-            scanner.end_record()?;
+        if layout == Layout::V41 {
+            for _ in 0..length {
+                tags.push(scanner.size("a node tag")?);
+                scanner.end_record()?;
+            }
         }
-        for &tag in &tags[first..] {
-            read_point(scanner, tag, &mut points, &mut heights)?;
+        for k in first..first + length {
+            if layout == Layout::V40 {
+                tags.push(scanner.size("a node tag")?);
+            }
+            read_point(scanner, tags[k], &mut points, &mut heights)?;
             for _ in 0..parameters {
                 scanner.double("a parameter of a node")?;
             }
             scanner.end_record()?;
         }
     }
-    head.check(scanner, tags.len())?;
     Nodes::new(tags, points, heights)
 }
 
 /// Reads the elements. A block holds elements of one kind.
-pub(super) fn elements(scanner: &mut Scanner, nodes: &Nodes) -> Result<Elements, GmshError> {
-    let head = Head::read(scanner, "elements")?;
+pub(super) fn elements(scanner: &mut Scanner, layout: Layout, nodes: &Nodes) -> Result<Elements, GmshError> {
     let mut elements = Elements::default();
-    let mut found = 0;
-    for _ in 0..head.blocks {
-        scanner.int("the dimension of an entity")?;
-        scanner.int("the tag of an entity")?;
+    for _ in 0..read_head(scanner, layout)? {
+        read_entity(scanner, layout)?;
         let kind = Kind::read(scanner)?;
         let length = read_count(scanner, "elements of a block")?;
         scanner.end_record()?;
@@ -64,9 +72,7 @@ pub(super) fn elements(scanner: &mut Scanner, nodes: &Nodes) -> Result<Elements,
             }
             scanner.end_record()?;
         }
-        found += length;
     }
-    head.check(scanner, found)?;
     Ok(elements)
 }
 
@@ -75,25 +81,26 @@ fn read_count(scanner: &mut Scanner, of: &'static str) -> Result<usize, GmshErro
     scanner.count(declared, of)
 }
 
-/// The first record of a section: numbers of blocks and of records, smallest and largest tag.
-struct Head {
-    of: &'static str,
-    blocks: usize,
-    records: usize,
-}
-
-impl Head {
-    fn read(scanner: &mut Scanner, of: &'static str) -> Result<Self, GmshError> {
-        let blocks = read_count(scanner, "blocks")?;
-        let records = read_count(scanner, of)?;
+/// Reads the first record of a section; the number of blocks. As for Gmsh, the number of records in all of them and the range
+/// of tags behind it mean nothing: the blocks say it again.
+fn read_head(scanner: &mut Scanner, layout: Layout) -> Result<usize, GmshError> {
+    let blocks = read_count(scanner, "blocks")?;
+    scanner.size("a count")?;
+    if layout == Layout::V41 {
         scanner.size("the smallest tag")?;
         scanner.size("the largest tag")?;
-        scanner.end_record()?;
-        Ok(Self { of, blocks, records })
     }
+    scanner.end_record()?;
+    Ok(blocks)
+}
 
-    /// Demands that the blocks held as many records as declared.
-    fn check(&self, scanner: &Scanner, found: usize) -> Result<(), GmshError> {
-        if found == self.records { Ok(()) } else { Err(scanner.wrong_total(self.of, self.records, found)) }
+/// Reads which entity a block belongs to; its dimension.
+fn read_entity(scanner: &mut Scanner, layout: Layout) -> Result<i32, GmshError> {
+    if layout == Layout::V40 {
+        scanner.int("the tag of an entity")?;
+        return scanner.int("the dimension of an entity");
     }
+    let dimension = scanner.int("the dimension of an entity")?;
+    scanner.int("the tag of an entity")?;
+    Ok(dimension)
 }

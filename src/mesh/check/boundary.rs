@@ -3,25 +3,13 @@
 use std::collections::HashMap;
 use std::f64::consts::TAU;
 
-use super::MeshError;
 use super::boxes::{Bounds, BoxIndex};
+use super::error::MeshError;
+use super::size::resolution;
 use crate::geometry::{distance_sq, twice_signed_area};
 
 /// Two boundary edges from one vertex whose directions differ by less than this angle (radians) lie on each other.
 const MIN_ANGLE: f64 = 1e-10;
-
-/// Boundary vertices closer than this fraction of the mesh's extent are the same point, given twice.
-const COINCIDENCE: f64 = 1e-12;
-
-/// What rounding can move a coordinate by, relative to the largest: far from the origin it exceeds [`COINCIDENCE`].
-const ROUNDING: f64 = 16.0 * f64::EPSILON;
-
-/// Points of a mesh between these corners are not told apart when they are closer than this.
-pub(in crate::mesh) fn resolution(lower: [f64; 2], upper: [f64; 2]) -> f64 {
-    let longer_side = (upper[0] - lower[0]).max(upper[1] - lower[1]);
-    let largest = lower.into_iter().chain(upper).fold(0.0, |l: f64, x| l.max(x.abs()));
-    (COINCIDENCE * longer_side).max(ROUNDING * largest)
-}
 
 /// An edge with a triangle on one side only, run through with the domain on its left.
 #[derive(Clone, Copy)]

@@ -1,6 +1,7 @@
 use proptest::prelude::*;
 
 use super::*;
+use crate::geometry::twice_signed_area;
 use crate::mesh::samples::{Random, irregular, renumbered, square, square_without};
 
 mod hanging;
@@ -23,14 +24,14 @@ fn mesh((points, triangles): Parts) -> Result<Mesh, MeshError> {
     Mesh::new(points, triangles)
 }
 
-/// Asserts that `broken` is refused with exactly this message and triangle, and that `mended` is accepted.
+/// Asserts that `broken` is refused with exactly this message and triangle, and that `fixed` is accepted.
 #[track_caller]
-fn assert_refused(broken: Parts, message: &str, triangle: Option<usize>, mended: Parts) {
+fn assert_refused(broken: Parts, message: &str, triangle: Option<usize>, fixed: Parts) {
     let error = mesh(broken).expect_err(message);
     assert_eq!(error.to_string(), message);
     assert_eq!(error.triangle(), triangle);
-    if let Err(error) = mesh(mended) {
-        panic!("the mended mesh is refused: {error}");
+    if let Err(error) = mesh(fixed) {
+        panic!("the fixed mesh is refused: {error}");
     }
 }
 
@@ -67,7 +68,7 @@ fn no_triangles() {
 
 #[test]
 fn coordinates_out_of_range() {
-    let mended = || parts(&CORNERS, &HALVES);
+    let fixed = || parts(&CORNERS, &HALVES);
     for (x, printed) in
         [(f64::NAN, "NaN"), (f64::INFINITY, "inf"), (f64::NEG_INFINITY, "-inf"), (-1e41, "-1e41")]
     {
@@ -76,7 +77,7 @@ fn coordinates_out_of_range() {
         let message = format!(
             "vertex 2 has the coordinates (2.5e-1, {printed}): all must be finite and below 1e40; choose another unit of length"
         );
-        assert_refused((points, HALVES.to_vec()), &message, None, mended());
+        assert_refused((points, HALVES.to_vec()), &message, None, fixed());
     }
     // Just below the limit, nothing overflows.
     let large = CORNERS.map(|point| point.map(|x| 0.99e40 * x));

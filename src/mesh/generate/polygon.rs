@@ -4,12 +4,12 @@ use std::collections::HashSet;
 
 use spade::{AngleLimit, ConstrainedDelaunayTriangulation, Point2, RefinementParameters, Triangulation};
 
+use super::error::{GenerateError, MAX_MIN_ANGLE, check_vertex_estimate};
 use crate::geometry::ring_area;
 use crate::mesh::Mesh;
-use crate::mesh::generate::{GenerateError, check_vertex_estimate};
 
-/// Ruppert's algorithm ends for angles up to about 33 degrees; 30 is what it reaches on any input in practice.
-pub(in crate::mesh) const MAX_MIN_ANGLE: f64 = 30.0;
+/// So many vertices may always be added: a coarse mesh need not be as coarse as `size` allows.
+const LEEWAY: usize = 10_000;
 
 /// The mesh's area may differ from the polygon's by rounding only, this fraction of it; a hole outside of the polygon
 /// or across another one makes a larger difference.
@@ -18,11 +18,12 @@ const AREA_TOLERANCE: f64 = 1e-9;
 /// The polygon `vertices` without the polygons `holes`, in triangles with edges of about `size` and angles of at least
 /// `min_angle` degrees (but for smaller angles of the polygon itself). Deterministic.
 ///
-/// Each ring is given in either orientation, its first vertex not repeated.
+/// Each ring is given in either orientation; its last vertex may repeat the first, as in GeoJSON.
 ///
 /// # Errors
 /// [`GenerateError`] for a `size` that is not positive or makes too many triangles, a `min_angle` outside of `0..=30`,
-/// rings with fewer than three vertices, rings that cross, holes that leave the polygon, and a refinement without end.
+/// rings with fewer than three vertices, rings that cross, holes that leave the polygon, and a polygon so narrow that its
+/// triangles take many more vertices than `size` asks for.
 pub fn polygon(
     vertices: &[[f64; 2]],
     holes: &[Vec<[f64; 2]>],
@@ -35,21 +36,24 @@ pub fn polygon(
     if !(0.0..=MAX_MIN_ANGLE).contains(&min_angle) {
         return Err(GenerateError::MinAngle { min_angle });
     }
-    let area = check_rings(vertices, holes)?;
+    let vertices = open_ring(vertices);
+    let holes: Vec<&[[f64; 2]]> = holes.iter().map(|hole| open_ring(hole)).collect();
+    let area = check_rings(vertices, &holes)?;
     let max_area = largest_triangle(size);
     // Two triangles a vertex, of half that area.
     let expected = check_vertex_estimate(area / max_area)?;
 
-    let mut cdt = triangulate_rings(vertices, holes)?;
-    let boundary = vertices.len() + holes.iter().map(Vec::len).sum::<usize>();
+    let mut cdt = triangulate_rings(vertices, &holes)?;
+    let boundary = vertices.len() + holes.iter().map(|hole| hole.len()).sum::<usize>();
+    let most = LEEWAY + 100 * boundary + 10 * expected;
     let parameters = RefinementParameters::new()
         .exclude_outer_faces(true)
         .with_angle_limit(AngleLimit::from_deg(min_angle))
         .with_max_allowed_area(max_area)
-        .with_max_additional_vertices(10_000 + 100 * boundary + 10 * expected);
+        .with_max_additional_vertices(most);
     let refinement = cdt.refine(parameters);
     if !refinement.refinement_complete {
-        return Err(GenerateError::Incomplete);
+        return Err(GenerateError::TooNarrow { min_angle, vertices: most, expected });
     }
 
     let excluded: HashSet<_> = refinement.excluded_faces.into_iter().collect();
@@ -82,8 +86,16 @@ pub(in crate::mesh) fn largest_triangle(size: f64) -> f64 {
     0.25 * 3f64.sqrt() * size * size
 }
 
+/// A ring without its last vertex, if that repeats the first.
+fn open_ring(ring: &[[f64; 2]]) -> &[[f64; 2]] {
+    match ring {
+        [first, open @ .., last] if first == last => &ring[..=open.len()],
+        _ => ring,
+    }
+}
+
 /// Checks the rings one by one; the area of the outer one less those of the holes.
-fn check_rings(vertices: &[[f64; 2]], holes: &[Vec<[f64; 2]>]) -> Result<f64, GenerateError> {
+fn check_rings(vertices: &[[f64; 2]], holes: &[&[[f64; 2]]]) -> Result<f64, GenerateError> {
     let mut area = checked_area("vertices", vertices)?;
     for (k, hole) in holes.iter().enumerate() {
         area -= checked_area(&format!("hole {}", k + 1), hole)?;
@@ -118,11 +130,11 @@ fn has_twins(ring: &[[f64; 2]]) -> bool {
 /// The constrained Delaunay triangulation of all rings, before refinement.
 fn triangulate_rings(
     vertices: &[[f64; 2]],
-    holes: &[Vec<[f64; 2]>],
+    holes: &[&[[f64; 2]]],
 ) -> Result<ConstrainedDelaunayTriangulation<Point2<f64>>, GenerateError> {
     let mut points = Vec::new();
     let mut edges = Vec::new();
-    for ring in std::iter::once(vertices).chain(holes.iter().map(Vec::as_slice)) {
+    for ring in std::iter::once(vertices).chain(holes.iter().copied()) {
         let first = points.len();
         points.extend(ring.iter().map(|&[x, y]| Point2::new(x, y)));
         edges.extend((0..ring.len()).map(|k| [first + k, first + (k + 1) % ring.len()]));
@@ -134,7 +146,7 @@ fn triangulate_rings(
     })
     .map_err(|error| GenerateError::Coordinates { reason: error.to_string() })?;
     if cdt.num_vertices() < given {
-        let mut rings = std::iter::once(vertices).chain(holes.iter().map(Vec::as_slice));
+        let mut rings = std::iter::once(vertices).chain(holes.iter().copied());
         return Err(match rings.any(has_twins) {
             true => GenerateError::Ring { ring: "the polygon".into(), problem: "has the same vertex twice" },
             false => GenerateError::Holes,
@@ -169,6 +181,35 @@ mod tests {
             |min_angle| polygon(&square(0.0, 0.0, 1.0), &[square(0.5, 0.5, 0.02)], 1.0, min_angle);
         assert!(with_small_hole(min_angle).unwrap().quality().min_angle >= min_angle);
         assert!(with_small_hole(0.0).unwrap().quality().min_angle < min_angle);
+    }
+
+    #[test]
+    fn a_ring_may_be_closed_by_its_first_vertex() {
+        let closed = |ring: Vec<[f64; 2]>| [ring.as_slice(), &ring[..1]].concat();
+        let (outer, hole) = (square(0.0, 0.0, 1.0), square(0.4, 0.3, 0.2));
+        let open = polygon(&outer, std::slice::from_ref(&hole), 0.2, 25.0).unwrap();
+        let mesh = polygon(&closed(outer.clone()), &[closed(hole)], 0.2, 25.0).unwrap();
+        assert_eq!((mesh.points(), mesh.triangles()), (open.points(), open.triangles()));
+        // Closed twice, it passes through that vertex twice; two vertices are none the more a polygon for being closed.
+        let message = |ring: &[[f64; 2]]| polygon(ring, &[], 0.2, 25.0).unwrap_err().to_string();
+        assert!(message(&closed(closed(outer.clone()))).contains("twice"));
+        assert!(message(&closed(outer[..2].to_vec())).contains("fewer than three"));
+        assert!(
+            message(&[[0.0, 0.0]]).contains("fewer than three") && message(&[]).contains("fewer than three")
+        );
+    }
+
+    #[test]
+    fn what_is_too_narrow_says_so_and_both_remedies_help() {
+        let strip = [[0.0, 0.0], [100.0, 0.0], [100.0, 0.01], [0.0, 0.01]];
+        let message = polygon(&strip, &[], 0.5, 25.0).unwrap_err().to_string();
+        assert_eq!(
+            message,
+            "triangles with angles of 25 degrees take more than 10500 vertices here, where `size` alone asks for about 10: the polygon has parts much narrower than `size`; give `min_angle = 0`, or a `size` as small as they are"
+        );
+        for (size, min_angle) in [(0.5, 0.0), (0.01, 25.0)] {
+            assert!(polygon(&strip, &[], size, min_angle).unwrap().quality().min_angle >= min_angle);
+        }
     }
 
     #[test]

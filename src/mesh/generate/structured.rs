@@ -2,20 +2,12 @@
 
 mod ancestry;
 mod numbering;
+mod pattern;
 
 use crate::mesh::{Mesh, MeshError};
 use ancestry::{ancestry, disk_ancestry};
 use numbering::GridNumbering;
-
-/// How a rectangular cell is divided.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Pattern {
-    /// Into two right triangles, by the diagonal from the lower left to the upper right corner.
-    #[default]
-    Right,
-    /// Into four triangles, by both diagonals.
-    Crossed,
-}
+pub use pattern::Pattern;
 
 /// The rectangle `(lower, upper)` in `cells[0] x cells[1]` cells. Vertices run along `x` first; the cell centres of the
 /// crossed pattern follow.

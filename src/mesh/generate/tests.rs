@@ -29,7 +29,7 @@ fn edges(size: f64) -> MeshSize {
 }
 
 #[test]
-fn each_mistake_has_its_message_and_its_mended_twin() {
+fn each_mistake_has_its_message_and_its_fixed_counterpart() {
     let square = Domain::unit_square;
     let table = [
         (square(), cells(0), "cells is 0: give at least 1", square(), CELLS),
@@ -102,10 +102,10 @@ fn each_mistake_has_its_message_and_its_mended_twin() {
         ),
         (disk_of([1e20, 0.0], 1.0), CELLS, "move it nearer to the origin", disk_of([1e5, 0.0], 1.0), CELLS),
     ];
-    for (domain, size, message, mended, mended_size) in table {
+    for (domain, size, message, fixed, fixed_size) in table {
         let found = generate(&domain, size).expect_err(message).to_string();
         assert!(found.contains(message) && !found.contains('\n'), "{found}");
-        assert!(generate(&mended, mended_size).is_ok(), "mended: {message}");
+        assert!(generate(&fixed, fixed_size).is_ok(), "fixed: {message}");
     }
 }
 

@@ -7,14 +7,10 @@ use std::sync::Arc;
 
 use super::circle::Circle;
 use crate::geometry::distance_sq;
-use crate::mesh::check::{Sense, resolution, sense};
+use crate::mesh::check::Smallest;
 use crate::mesh::topology::Edges;
 use crate::mesh::{Mesh, MeshError, VertexKind};
 use crate::problem::Domain;
-
-/// Edges are at least this many times as long as the distance at which points are told apart: then [`Mesh::new`] accepts
-/// the mesh down to angles of 0.01, half a degree.
-const RESOLVED: f64 = 100.0;
 
 /// A mesh that can be refined again and again where it is asked for, by newest-vertex bisection.
 ///
@@ -34,8 +30,8 @@ pub struct Bisection {
     origin: Vec<usize>,
     /// What new vertices on the boundary follow; `None`: the polygon.
     circle: Option<Circle>,
-    /// Shorter edges are not made.
-    shortest: f64,
+    /// Smaller triangles are not made.
+    smallest: Smallest,
 }
 
 impl Bisection {
@@ -55,9 +51,8 @@ impl Bisection {
         };
         let refinement_edge = mesh.triangles.iter().map(longest).collect();
         let origin = (0..mesh.triangles.len()).collect();
-        let (lower, upper) = mesh.bounding_box();
-        let shortest = RESOLVED * resolution(lower, upper);
-        Self { mesh, refinement_edge, origin, circle: None, shortest }
+        let smallest = Smallest::of(&mesh);
+        Self { mesh, refinement_edge, origin, circle: None, smallest }
     }
 
     /// Bisections of a mesh of `domain`: on a disk, new vertices on the boundary are moved to its circle. Otherwise as
@@ -109,8 +104,8 @@ impl Bisection {
         let (triangles, refinement_edge, origin) = self.children(&edges, &halved);
         for (&corners, &triangle) in triangles.iter().zip(&origin) {
             let parent = self.mesh.triangles[triangle];
-            if corners != parent && !self.is_large_enough(corners.map(|a| points[a])) {
-                return Err(MeshError::TooSmall { triangle, corners: parent });
+            if corners != parent && !self.smallest.allows(corners.map(|a| points[a])) {
+                return Err(self.mesh.too_small(triangle));
             }
         }
         let ancestry = self.mesh.ancestry_of_refinement(&parents);
@@ -133,13 +128,6 @@ impl Bisection {
             }
         }
         (0..halved.len()).filter(|&edge| halved[edge]).collect()
-    }
-
-    /// Whether a triangle has its corners apart and in counterclockwise order.
-    fn is_large_enough(&self, corners: [[f64; 2]; 3]) -> bool {
-        let [a, b, c] = corners;
-        let shortest_sq = distance_sq(a, b).min(distance_sq(b, c)).min(distance_sq(c, a));
-        shortest_sq >= self.shortest * self.shortest && sense(corners) == Sense::Counterclockwise
     }
 
     /// The corner of triangle `t` at which its refinement edge starts.

@@ -57,16 +57,17 @@ impl MeshFamily {
     pub fn refine(&mut self) -> Result<Vec<[usize; 2]>, MeshError> {
         let (parents, mesh) = match &mut self.shape {
             Shape::Polygon => {
-                let Refinement { mesh, parents } = self.mesh.refine_checked()?;
+                let Refinement { mesh, parents } = self.mesh.refine()?;
                 (parents, mesh)
             }
             Shape::Disk(circle) => {
-                let Refinement { mut mesh, parents } = self.mesh.refine();
+                let Refinement { mut mesh, parents } = self.mesh.refine()?;
                 circle.attract(&mut mesh.points, &mesh.kind);
+                self.mesh.check_parts(&mesh)?;
                 (parents, mesh.checked()?)
             }
             Shape::Graded { uniform, point, exponent } => {
-                let Refinement { mesh, parents } = uniform.refine();
+                let Refinement { mesh, parents } = uniform.refine()?;
                 let graded = mesh.graded(*point, *exponent)?;
                 *uniform = mesh;
                 (parents, graded)
@@ -82,7 +83,7 @@ mod tests {
     use std::f64::consts::PI;
 
     use super::*;
-    use crate::mesh::{Pattern, disk, l_shape, rectangle};
+    use crate::mesh::{Pattern, SubTriangulation, disk, l_shape, rectangle};
 
     #[test]
     fn a_disk_stays_round_and_a_polygon_does_not() {
@@ -103,16 +104,38 @@ mod tests {
         assert!(round.mesh().quality().min_angle > 30.0);
     }
 
-    /// A small square far from the origin: its coordinates have digits for 43 cells along a side, not for more.
+    /// Whether a mesh would be accepted from a file.
+    fn is_valid(mesh: &Mesh) -> bool {
+        Mesh::new(mesh.points().to_vec(), mesh.triangles().to_vec()).is_ok()
+    }
+
+    /// Small domains far from the origin: edges of 1e-4 at coordinates of 1e6 have 20 bits, of which a mesh needs 12.
     #[test]
-    fn refinement_ends_where_coordinates_have_no_digits_left() {
-        let far = [1e6; 2];
-        let mesh = rectangle(far, far.map(|x| x + 1e-8), [1; 2], Pattern::Right).unwrap();
-        let mut family = MeshFamily::polygonal(mesh);
-        let refinements = (0..10).take_while(|_| family.refine().is_ok()).count();
-        assert!((4..8).contains(&refinements), "{refinements} refinements");
-        assert!(matches!(family.refine(), Err(MeshError::TooSmall { .. })));
-        assert!(family.mesh().quality().min_angle > 0.0, "the last mesh stays");
+    fn refinement_ends_where_coordinates_have_no_digits_left_and_meshes_are_valid_until_then() {
+        let (far, side) = ([1e6; 2], 1e-4);
+        let square = || rectangle(far, far.map(|x| x + side), [2; 2], Pattern::Right).unwrap();
+        let circle = Domain::Disk { centre: far, radius: side };
+        let families = [
+            MeshFamily::polygonal(square()),
+            MeshFamily::of_domain(disk(far, side, 2).unwrap(), &circle),
+            MeshFamily::graded(square(), far.map(|x| x + 0.5 * side), 1.5).unwrap(),
+        ];
+        for mut family in families {
+            let mut refinements = 0;
+            let error = loop {
+                assert!(is_valid(family.mesh()), "{family:?}");
+                assert!(SubTriangulation::new(family.mesh()).is_ok(), "{family:?}");
+                match family.refine() {
+                    Ok(_) => refinements += 1,
+                    Err(error) => break error,
+                }
+            };
+            assert!((4..8).contains(&refinements), "{refinements} refinements: {family:?}");
+            assert!(matches!(error, MeshError::TooSmall { .. }), "{error}");
+        }
+        // Without the limit, the next mesh but three would be none.
+        let edge = 2f64.powi(-15) * side;
+        assert!(rectangle(far, far.map(|x| x + edge), [1; 2], Pattern::Right).is_err());
     }
 
     #[test]

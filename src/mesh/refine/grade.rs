@@ -1,5 +1,6 @@
 //! Meshes graded towards a point (Remark 10).
 
+use crate::mesh::check::Smallest;
 use crate::mesh::{Mesh, MeshError};
 
 /// The area may change by rounding only; a boundary that the map does not keep changes it more.
@@ -15,7 +16,7 @@ impl Mesh {
     ///
     /// # Errors
     /// [`MeshError::NotGraded`] when the exponent is below 1 or not finite, or when the map does not keep the domain;
-    /// others when triangles become too small to be represented.
+    /// [`MeshError::TooSmall`] when triangles become too small to be told apart.
     pub fn graded(&self, point: [f64; 2], exponent: f64) -> Result<Self, MeshError> {
         if !(exponent >= 1.0 && exponent.is_finite()) {
             return Err(MeshError::NotGraded { exponent });
@@ -27,7 +28,13 @@ impl Mesh {
             let factor = (distance(x) / farthest).powf(exponent - 1.0);
             [0, 1].map(|axis| point[axis] + factor * (x[axis] - point[axis]))
         };
-        let graded = Self::new(self.points.iter().map(move_closer).collect(), self.triangles.clone())?;
+        let points: Vec<[f64; 2]> = self.points.iter().map(move_closer).collect();
+        let smallest = Smallest::of(self);
+        let is_too_small = |corners: &[usize; 3]| !smallest.has_edges_apart(corners.map(|a| points[a]));
+        if let Some(triangle) = self.triangles.iter().position(is_too_small) {
+            return Err(self.too_small(triangle));
+        }
+        let graded = Self::new(points, self.triangles.clone())?;
         let same_area = (graded.area() - self.area()).abs() <= AREA_TOLERANCE * self.area();
         if same_area && graded.triangles == self.triangles {
             Ok(graded.with_ancestry(self.ancestry.clone()))
@@ -56,6 +63,15 @@ mod tests {
         let graded = square.graded([0.5, 0.5], 2.0).unwrap();
         assert!(graded.quality().h_max < 2.0 * square.quality().h_max);
         assert!(graded.quality().min_angle > 10.0, "{:?}", graded.quality());
+    }
+
+    #[test]
+    fn a_grading_beyond_the_digits_is_refused() {
+        let square = rectangle([0.0, 0.0], [1.0, 1.0], [8, 8], Pattern::Right).unwrap();
+        // 0.5 * 4^-exponent
+        assert!(square.graded([0.5, 0.5], 16.0).is_ok());
+        assert!(matches!(square.graded([0.5, 0.5], 18.0), Err(MeshError::TooSmall { .. })));
+        assert!(matches!(square.graded([0.5, 0.5], 1e3), Err(MeshError::TooSmall { .. })));
     }
 
     #[test]

@@ -1,7 +1,8 @@
 //! Uniform refinement: each triangle into four, by the midpoints of its edges.
 
+use crate::mesh::check::Smallest;
 use crate::mesh::topology::Midpoints;
-use crate::mesh::{Mesh, VertexKind};
+use crate::mesh::{Mesh, MeshError, VertexKind};
 
 /// A refined mesh and where its vertices come from.
 #[derive(Debug, Clone)]
@@ -17,7 +18,11 @@ impl Mesh {
     /// Divides every triangle into four similar ones. Linear time.
     ///
     /// Curved boundaries are not followed: the domain stays the polygon that the coarse mesh covers.
-    pub fn refine(&self) -> Refinement {
+    ///
+    /// # Errors
+    /// [`MeshError::TooSmall`] when edges would become shorter than about 1e-10 of the size of the mesh (3e-13 of its largest
+    /// coordinate, if that is more): what is returned, [`Mesh::new`] accepts.
+    pub fn refine(&self) -> Result<Refinement, MeshError> {
         let midpoints = Midpoints::new(self);
         let points = [self.points.as_slice(), &midpoints.points].concat();
         let kind_of_midpoint =
@@ -31,7 +36,21 @@ impl Mesh {
             .flat_map(|(&[a, b, c], &[ab, bc, ca])| [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]])
             .collect();
         let ancestry = self.ancestry_of_refinement(&midpoints.ends);
-        Refinement { mesh: Mesh { points, triangles, kind, ancestry }, parents: midpoints.ends }
+        let mesh = Mesh { points, triangles, kind, ancestry };
+        self.check_parts(&mesh)?;
+        Ok(Refinement { mesh, parents: midpoints.ends })
+    }
+
+    /// Demands that the parts of all triangles, four each, are large enough.
+    ///
+    /// # Errors
+    /// [`MeshError::TooSmall`], naming the triangle.
+    pub(super) fn check_parts(&self, fine: &Self) -> Result<(), MeshError> {
+        let smallest = Smallest::of(self);
+        match (0..fine.triangles.len()).find(|&part| !smallest.allows(fine.corners(part))) {
+            Some(part) => Err(self.too_small(part / 4)),
+            None => Ok(()),
+        }
     }
 }
 
@@ -42,6 +61,7 @@ mod tests {
     use super::*;
     use crate::mesh::samples::{assorted, irregular, renumbered, square};
     use crate::mesh::topology::HalfEdges;
+    use crate::mesh::{Pattern, l_shape};
 
     /// Rounding of sums over the triangles of small meshes of size one.
     const ROUNDING: f64 = 1e-12;
@@ -53,7 +73,7 @@ mod tests {
     #[test]
     fn triangles_vertices_and_boundary_are_counted_by_eulers_formula() {
         for coarse in assorted() {
-            let Refinement { mesh: fine, parents } = coarse.refine();
+            let Refinement { mesh: fine, parents } = coarse.refine().unwrap();
             let (vertices, triangles) = (coarse.points().len(), coarse.triangles().len());
             // Each vertex of the boundary starts as many edges of it as there are sectors of the domain at it.
             let boundary =
@@ -70,7 +90,7 @@ mod tests {
     #[test]
     fn the_result_is_a_mesh_with_the_same_area_and_angles() {
         for coarse in assorted() {
-            let fine = coarse.refine().mesh;
+            let fine = coarse.refine().unwrap().mesh;
             let checked = Mesh::new(fine.points().to_vec(), fine.triangles().to_vec()).unwrap();
             assert_eq!(checked.triangles(), fine.triangles(), "counterclockwise");
             assert_eq!(checked.kind(), fine.kind());
@@ -81,13 +101,13 @@ mod tests {
             assert!((2.0 * after.h_max / before.h_max - 1.0).abs() < ROUNDING);
             assert!((2.0 * after.h_min / before.h_min - 1.0).abs() < ROUNDING);
         }
-        assert_ne!(square(2).refine().mesh.quality(), square(2).quality());
+        assert_ne!(square(2).refine().unwrap().mesh.quality(), square(2).quality());
     }
 
     #[test]
     fn old_vertices_stay_and_new_ones_are_the_midpoints_of_their_parents() {
         for coarse in assorted() {
-            let Refinement { mesh: fine, parents } = coarse.refine();
+            let Refinement { mesh: fine, parents } = coarse.refine().unwrap();
             let (old, new) = fine.points().split_at(coarse.points().len());
             assert_eq!(old, coarse.points());
             assert_eq!(fine.kind()[..old.len()], *coarse.kind());
@@ -106,7 +126,7 @@ mod tests {
     #[test]
     fn one_triangle_becomes_four() {
         let corners = vec![[0.0, 0.0], [2.0, 0.0], [0.0, 2.0]];
-        let Refinement { mesh, parents } = Mesh::new(corners, vec![[0, 1, 2]]).unwrap().refine();
+        let Refinement { mesh, parents } = Mesh::new(corners, vec![[0, 1, 2]]).unwrap().refine().unwrap();
         assert_eq!(parents, [[0, 1], [0, 2], [1, 2]]);
         assert_eq!(mesh.points()[3..], [[1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]);
         assert_eq!(mesh.triangles(), [[0, 3, 4], [3, 1, 5], [4, 5, 2], [3, 5, 4]]);
@@ -124,6 +144,22 @@ mod tests {
         triangles
     }
 
+    #[test]
+    fn what_is_too_small_to_be_told_apart_is_not_made() {
+        // Edges of 4^-15 = 9e-10 at the corner of a domain of the size 2: they can be halved twice.
+        let mut mesh = l_shape(1.0, 4, Pattern::Right).unwrap().graded([0.0, 0.0], 15.0).unwrap();
+        for _ in 0..2 {
+            mesh = mesh.refine().unwrap().mesh;
+            assert!(Mesh::new(mesh.points().to_vec(), mesh.triangles().to_vec()).is_ok());
+        }
+        let Err(MeshError::TooSmall { corners, .. }) = mesh.refine() else { panic!("too small") };
+        let edges = [0, 1, 2].map(|i| {
+            let [p, q] = [corners[i], corners[(i + 1) % 3]].map(|a| mesh.points()[a]);
+            (p[0] - q[0]).hypot(p[1] - q[1])
+        });
+        assert!(edges.iter().any(|&edge| edge < 4e-10), "halved, one is below 2e-10: {edges:?}");
+    }
+
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(32))]
 
@@ -131,9 +167,9 @@ mod tests {
         fn refining_commutes_with_renumbering(cells in 1..6usize, seed: u64) {
             let mesh = irregular(cells);
             let (other, _) = renumbered(&mesh, seed);
-            let (fine, other_fine) = (mesh.refine().mesh, other.refine().mesh);
+            let (fine, other_fine) = (mesh.refine().unwrap().mesh, other.refine().unwrap().mesh);
             prop_assert!(triangles_as_points(&fine) == triangles_as_points(&other_fine));
-            prop_assert!(triangles_as_points(&fine) != triangles_as_points(&mesh.refine().mesh.refine().mesh));
+            prop_assert!(triangles_as_points(&fine) != triangles_as_points(&mesh.refine().unwrap().mesh.refine().unwrap().mesh));
         }
     }
 }

@@ -2,6 +2,14 @@
 
 use std::ops::Range;
 
+/// Which corner of a triangle (0, 1 or 2) a vertex is.
+///
+/// # Panics
+/// When it is none of them: callers take the triangles around the vertex.
+pub(crate) fn corner_of(triangle: [usize; 3], vertex: usize) -> usize {
+    triangle.iter().position(|&a| a == vertex).expect("a vertex is a corner of the triangles around it")
+}
+
 /// The triangles `T_a` around each vertex `a`, in compressed rows, in increasing order.
 #[derive(Debug)]
 pub(crate) struct VertexTriangles {
@@ -110,6 +118,12 @@ mod tests {
             assert!(!found.is_empty());
         }
         assert!(around.of(mesh.points().len()).is_empty(), "a vertex in no triangle");
+    }
+
+    #[test]
+    fn a_corner_is_found_by_its_vertex() {
+        assert_eq!([7, 3, 5].map(|a| corner_of([7, 3, 5], a)), [0, 1, 2]);
+        assert!(std::panic::catch_unwind(|| corner_of([7, 3, 5], 4)).is_err(), "it is no corner");
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The edges of a mesh, numbered.
 
 use crate::mesh::Mesh;
-use crate::mesh::topology::HalfEdges;
+use crate::mesh::topology::{HalfEdges, corner_of};
 
 /// The edges, in increasing order of their ends.
 pub(in crate::mesh) struct Edges {
@@ -20,8 +20,7 @@ impl Edges {
         for (lower, upper, sides) in HalfEdges::new(mesh.points.len(), &mesh.triangles).edges() {
             for side in sides {
                 let from = if side.reversed { upper } else { lower };
-                let corner = mesh.triangles[side.triangle].iter().position(|&a| a == from);
-                let corner = corner.expect("a half edge starts at a corner of its triangle");
+                let corner = corner_of(mesh.triangles[side.triangle], from);
                 of_triangle[side.triangle][corner] = ends.len();
             }
             ends.push([lower, upper]);

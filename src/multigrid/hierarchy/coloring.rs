@@ -22,11 +22,12 @@ impl Coloring {
         bandwidth: usize,
         coupled: impl Fn(usize) -> I,
     ) -> (Self, Vec<u32>) {
-        let mut color = vec![u8::MAX; rows];
+        let mut color = vec![0u32; rows];
         let mut colors = 1;
         for i in 0..rows {
-            let taken = coupled(i).filter(|&j| j < i).fold(0u64, |taken, j| taken | 1 << color[j]);
-            color[i] = taken.trailing_ones() as u8;
+            color[i] = least_free(coupled(i).filter(|&j| j < i).map(|j| color[j]), || {
+                coupled(i).filter(|&j| j < i).map(|j| color[j]).collect()
+            });
             colors = colors.max(color[i] as usize + 1);
         }
         let mut start = vec![0];
@@ -69,6 +70,52 @@ impl Coloring {
             for stage in step.saturating_sub(windows - 1)..stages.min(step + 1) {
                 run(stage, step - stage);
             }
+        }
+    }
+}
+
+/// The least colour that is not taken. Up to 64 colours, which are all that a triangulation needs, fit in a word; `all` are those
+/// taken once more.
+fn least_free(taken: impl Iterator<Item = u32>, all: impl Fn() -> Vec<u32>) -> u32 {
+    let word = taken.fold(0u64, |word, color| word | 1u64.checked_shl(color).unwrap_or(0));
+    if word != u64::MAX {
+        return word.trailing_ones();
+    }
+    let mut all = all();
+    all.sort_unstable();
+    all.dedup();
+    (0..).zip(&all).take_while(|&(free, &color)| free == color).count() as u32
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whether no two rows of a colour are coupled.
+    fn is_proper(coloring: &Coloring, order: &[u32], coupled: impl Fn(usize, usize) -> bool) -> bool {
+        (0..coloring.windows())
+            .flat_map(|window| (0..coloring.colors()).map(move |color| (window, color)))
+            .all(|(window, color)| {
+                let rows = || coloring.rows(window, color).map(|k| order[k] as usize);
+                rows().all(|i| rows().all(|j| i == j || !coupled(i, j)))
+            })
+    }
+
+    #[test]
+    fn there_may_be_more_than_64_colours() {
+        for rows in [63, 64, 65, 66, 130, 300] {
+            // All rows coupled; and two such sets that know nothing of each other, one after the other and in turn.
+            let sets: [fn(usize, usize) -> bool; 3] =
+                [|_, _| true, |i, j| (i < 65) == (j < 65), |i, j| i % 2 == j % 2];
+            for coupled in sets {
+                let neighbours = |i: usize| (0..rows).filter(move |&j| j != i && coupled(i, j));
+                let (coloring, order) = Coloring::new(rows, rows, neighbours);
+                let largest = (0..rows).map(|i| neighbours(i).count() + 1).max().unwrap();
+                assert_eq!(coloring.colors(), largest);
+                assert!(is_proper(&coloring, &order, coupled));
+            }
+            let (one, order) = Coloring::new(rows, rows, |_| std::iter::empty());
+            assert!(!is_proper(&one, &order, |_, _| true), "one colour is not enough");
         }
     }
 }

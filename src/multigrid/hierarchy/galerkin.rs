@@ -1,6 +1,6 @@
 //! Galerkin products: the matrix of a coarser level is `P' A P`.
 
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 use super::matrix::{BLOCK, Pattern, Rows, Values, assemble};
 use super::transfer::Transfer;

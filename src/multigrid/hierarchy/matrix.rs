@@ -1,11 +1,10 @@
 //! Symmetric matrices in compact rows.
 
-use rayon::prelude::*;
+use sprs::CsMat;
 
-use super::galerkin::RowSum;
-use super::inverse;
-use super::runs::{LONGEST, Runs};
-use crate::discretization::Discretization;
+use crate::parallel::prelude::*;
+
+use super::ordering::inverse;
 use crate::mesh::VertexKind;
 
 /// Rows that are made together.
@@ -27,6 +26,8 @@ pub(crate) struct Values {
     pub(crate) inverse: Vec<f64>,
     /// Whether the rows of each run share a stencil.
     pub(crate) shared: Vec<bool>,
+    /// Whether rows of each run have been replaced: they may be coupled to others of their colour.
+    pub(crate) replaced: Vec<bool>,
 }
 
 /// Consecutive rows of a matrix.
@@ -84,30 +85,9 @@ impl Values {
         sum
     }
 
-    /// Likewise for the rows of a run.
-    #[inline(always)]
-    pub(crate) fn off_diagonal_products<'p>(
-        &self,
-        (pattern, runs): (&Pattern, &Runs),
-        run: usize,
-        x: &[f64],
-        products: &'p mut [f64; LONGEST],
-    ) -> &'p [f64] {
-        let rows = runs.rows(run);
-        let products = &mut products[..rows.len()];
-        if self.shared[run] {
-            self.stencil_products(pattern, rows.start, x, products);
-        } else {
-            for (product, i) in products.iter_mut().zip(rows) {
-                *product = self.off_diagonal_product(pattern, i, x);
-            }
-        }
-        products
-    }
-
     /// For rows that have the entries of the `first` one, each in the next column.
     #[inline(always)]
-    fn stencil_products(&self, pattern: &Pattern, first: usize, x: &[f64], products: &mut [f64]) {
+    pub(super) fn stencil_products(&self, pattern: &Pattern, first: usize, x: &[f64], products: &mut [f64]) {
         let range = pattern.range(first);
         let (mut columns, mut values) = (&pattern.column[range.clone()], &self.off_diagonal[range]);
         let rows = products.len();
@@ -129,17 +109,24 @@ impl Values {
         }
     }
 
-    /// The rows of a run have no common stencil any more.
+    /// Rows of a run are replaced: they have no common stencil any more, and may be coupled to others of their colour.
     pub(crate) fn part(&mut self, run: usize) {
         self.shared[run] = false;
+        self.replaced[run] = true;
     }
 
-    /// Replaces the row `i` by a sum whose columns are in the pattern.
-    pub(crate) fn set_row(&mut self, pattern: &Pattern, i: usize, sum: &RowSum) {
+    /// Whether a row of a run may be coupled to others of its colour.
+    #[inline(always)]
+    pub(crate) fn is_replaced(&self, run: usize) -> bool {
+        self.replaced[run]
+    }
+
+    /// Replaces the entries of the row `i`, whose columns stay.
+    pub(crate) fn set_row(&mut self, pattern: &Pattern, i: usize, entry: impl Fn(usize) -> f64) {
         for (&j, value) in pattern.row(i).iter().zip(&mut self.off_diagonal[pattern.range(i)]) {
-            *value = sum.at(j as usize);
+            *value = entry(j as usize);
         }
-        self.diagonal[i] = sum.at(i);
+        self.diagonal[i] = entry(i);
         self.inverse[i] = reciprocal(self.diagonal[i]);
     }
 }
@@ -166,12 +153,13 @@ pub(crate) fn assemble(blocks: Vec<Rows>) -> (Pattern, Values) {
         diagonal: vec![0.0; rows],
         inverse: vec![0.0; rows],
         shared: Vec::new(),
+        replaced: Vec::new(),
     };
     let (mut start, mut column) = (&mut pattern.start[1..], &mut pattern.column[..]);
     let mut off_diagonal = &mut values.off_diagonal[..];
     let (mut diagonal, mut inverse) = (&mut values.diagonal[..], &mut values.inverse[..]);
     let mut offset = 0;
-    rayon::scope(|scope| {
+    crate::parallel::scope(|scope| {
         for block in blocks {
             let (rows, entries) = (block.ends.len(), block.column.len());
             let start = split_off(&mut start, rows);
@@ -222,9 +210,7 @@ pub(crate) fn reordered(
 }
 
 /// `K` with empty rows for held vertices, the vertices in this order.
-pub(crate) fn compact_stiffness(d: &Discretization, order: &[u32]) -> (Pattern, Values) {
-    let k = d.stiffness();
-    let kind = d.mesh().kind();
+pub(crate) fn compact_stiffness(k: &CsMat<f64>, kind: &[VertexKind], order: &[u32]) -> (Pattern, Values) {
     let position = inverse(order);
     let block = |block: &[u32]| {
         let mut rows = Rows::with_capacity(BLOCK);

@@ -1,44 +1,55 @@
 //! Numberings in which neighbours are near: a smoother that runs through the memory once needs them.
 
-use crate::mesh::Parents;
-use std::sync::Arc;
+use sprs::CsMat;
+
+use super::genealogy::{Genealogy, NONE};
+use crate::parallel::prelude::*;
 
 /// A numbering is left as it is when no neighbours are further apart than this many times the side of a square mesh.
 const NEAR: f64 = 4.0;
 
 /// Whether neighbours are near each other in a numbering of this bandwidth.
-pub(crate) fn is_banded(vertices: usize, bandwidth: usize) -> bool {
+pub(super) fn is_banded(vertices: usize, bandwidth: usize) -> bool {
     bandwidth as f64 <= NEAR * (vertices as f64).sqrt()
 }
 
-/// The vertices of each mesh of an ancestry in a banded order, from the coarsest mesh to the finest: layer by layer on the
-/// coarsest, whose `edges` are given, and midpoints between their parents on the others.
-pub(crate) fn banded_orders(vertices: usize, edges: &[[u32; 2]], ancestry: &[Arc<Parents>]) -> Vec<Vec<u32>> {
-    let mut orders = vec![layers(vertices, edges)];
-    for parents in ancestry {
-        let coarse = &orders[orders.len() - 1];
-        let position = super::inverse(coarse);
-        let keys = parents.ends().iter().map(|&[a, b]| position[a as usize] + position[b as usize]);
-        orders.push(sorted_by(2 * coarse.len(), keys));
+/// The vertices of a mesh in a banded order: layer by layer on the coarsest mesh known, and all others between their parents.
+pub(super) fn banded_order(k: &CsMat<f64>, genealogy: &Genealogy) -> Vec<u32> {
+    let roots = genealogy.roots();
+    let layers = layers(roots.len(), &edges_of_roots(k, genealogy));
+    if roots.len() == k.rows() {
+        return layers.into_iter().map(|root| roots[root as usize]).collect();
     }
-    orders
+    let mut place = vec![0.0; k.rows()];
+    for (position, &root) in layers.iter().enumerate() {
+        place[roots[root as usize] as usize] = position as f64;
+    }
+    for a in genealogy.eldest_first().into_iter().filter(|&a| !genealogy.is_root(a)) {
+        let parents = genealogy.parents(a);
+        let sum: f64 = parents.vertices().iter().map(|&b| place[b as usize]).sum();
+        place[a as usize] = sum / parents.vertices().len() as f64;
+    }
+    let mut sorted: Vec<(f64, u32)> = place.into_iter().zip(0..).collect();
+    sorted.par_sort_unstable_by(|(p, a), (q, b)| p.total_cmp(q).then(a.cmp(b)));
+    sorted.into_iter().map(|(_, a)| a).collect()
 }
 
-/// The numbers `0..` of the keys, sorted by them.
-fn sorted_by(keys: usize, of: impl Iterator<Item = u32> + Clone) -> Vec<u32> {
-    let mut start = vec![0u32; keys + 1];
-    for key in of.clone() {
-        start[key as usize + 1] += 1;
+/// The edges of the coarsest mesh known, by the numbers that vertices have there: those that are still edges, and those with a
+/// midpoint.
+fn edges_of_roots(k: &CsMat<f64>, genealogy: &Genealogy) -> Vec<[u32; 2]> {
+    let mut number = vec![NONE; k.rows()];
+    for (root, &a) in (0..).zip(genealogy.roots()) {
+        number[a as usize] = root;
     }
-    for key in 0..keys {
-        start[key + 1] += start[key];
-    }
-    let mut order = vec![0; start[keys] as usize];
-    for (i, key) in of.enumerate() {
-        order[start[key as usize] as usize] = i as u32;
-        start[key as usize] += 1;
-    }
-    order
+    let edge = |a: u32, b: u32| [number[a as usize], number[b as usize]];
+    let entries = genealogy.roots().iter().flat_map(|&a| {
+        let row = k.indptr().outer_inds_sz(a as usize);
+        k.indices()[row].iter().map(move |&b| [a, b as u32]).filter(|[a, b]| a < b)
+    });
+    let parents = (0..k.rows() as u32).map(|a| genealogy.parents(a));
+    let ends = parents.filter_map(|parents| <[u32; 2]>::try_from(parents.vertices()).ok());
+    let edges = entries.chain(ends).map(|[a, b]| edge(a, b));
+    edges.filter(|ends| ends.iter().all(|&end| end != NONE)).collect()
 }
 
 /// The layers of neighbours around a vertex at the rim of each component (Cuthill, McKee 1969).
@@ -90,4 +101,13 @@ fn walk<'n>(from: u32, around: &impl Fn(u32) -> &'n [u32], seen: &mut [bool], or
         }
         at += 1;
     }
+}
+
+/// Where each of the numbers `0..n` stands in an order of them.
+pub(super) fn inverse(order: &[u32]) -> Vec<u32> {
+    let mut position = vec![0; order.len()];
+    for (i, &old) in order.iter().enumerate() {
+        position[old as usize] = i as u32;
+    }
+    position
 }

@@ -5,7 +5,7 @@
 
 use std::ops::Range;
 
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 use super::coloring::Coloring;
 use super::matrix::{Pattern, Values};
@@ -106,4 +106,27 @@ fn has_stencil(i: usize, first: usize, (pattern, values): (&Pattern, &Values), t
         && same(diagonal, values.diagonal[i])
         && columns.iter().zip(shifted).all(|(j, k)| *k as usize == *j as usize + (i - first))
         && entries.iter().zip(others).all(|(&a, &b)| same(a, b))
+}
+
+impl Values {
+    /// [`off_diagonal_product`](Self::off_diagonal_product) of the rows of a run.
+    #[inline(always)]
+    pub(crate) fn off_diagonal_products<'p>(
+        &self,
+        (pattern, runs): (&Pattern, &Runs),
+        run: usize,
+        x: &[f64],
+        products: &'p mut [f64; LONGEST],
+    ) -> &'p [f64] {
+        let rows = runs.rows(run);
+        let products = &mut products[..rows.len()];
+        if self.shared[run] {
+            self.stencil_products(pattern, rows.start, x, products);
+        } else {
+            for (product, i) in products.iter_mut().zip(rows) {
+                *product = self.off_diagonal_product(pattern, i, x);
+            }
+        }
+        products
+    }
 }

@@ -36,7 +36,7 @@ fn largest_difference(level: &Level, mesh: &Mesh, vertex: impl Fn(usize) -> usiz
 #[test]
 fn galerkin_products_on_nested_meshes_are_the_stiffness_of_the_coarse_mesh() {
     let coarse = irregular(5);
-    let fine = coarse.refine().mesh;
+    let fine = coarse.refine().unwrap().mesh;
     let hierarchy = hierarchy_of(&fine);
     let finest = &hierarchy.levels()[hierarchy.finest()];
     let below = &hierarchy.levels()[hierarchy.finest() - 1];
@@ -68,7 +68,7 @@ fn is_colored(level: &Level, coloring: &Coloring) -> bool {
 #[test]
 fn colours_and_windows_are_what_the_sweeps_rely_on() {
     let square = rectangle([0.0, 0.0], [1.0, 1.0], [24, 16], Pattern::Right).unwrap();
-    for mesh in [square, irregular(9).refine().mesh, unit_square(0.05)] {
+    for mesh in [square, irregular(9).refine().unwrap().mesh, unit_square(0.05)] {
         let hierarchy = hierarchy_of(&mesh);
         for level in &hierarchy.levels()[1..] {
             assert!(is_colored(level, &level.coloring));
@@ -81,7 +81,7 @@ fn colours_and_windows_are_what_the_sweeps_rely_on() {
 
 #[test]
 fn refined_meshes_are_numbered_so_that_neighbours_are_near() {
-    let mesh = (0..3).fold(irregular(8), |mesh, _| mesh.refine().mesh);
+    let mesh = (0..3).fold(irregular(8), |mesh, _| mesh.refine().unwrap().mesh);
     let windows = |hierarchy: &Hierarchy| hierarchy.levels()[hierarchy.finest()].coloring.windows();
     let side = (mesh.points().len() as f64).sqrt();
     assert!(windows(&hierarchy_of(&mesh)) as f64 > side / NEAR_WINDOWS, "many windows");
@@ -155,7 +155,7 @@ fn products_by_stencils_are_those_of_the_rows() {
         (uniform(64), [true, true]),
         // A third is no binary fraction: entries differ by rounding, which only corrections may overlook.
         (uniform(48 * 3), [false, true]),
-        (irregular(24).refine().mesh, [false, false]),
+        (irregular(24).refine().unwrap().mesh, [false, false]),
     ] {
         let hierarchy = hierarchy_of(&mesh);
         for (below, expected) in expected.into_iter().enumerate() {

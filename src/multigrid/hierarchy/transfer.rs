@@ -2,7 +2,9 @@
 
 use std::ops::Range;
 
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
+
+use super::genealogy::Mean;
 
 /// Rows that are gathered together.
 const BLOCK: usize = 4096;
@@ -85,6 +87,16 @@ impl Parents {
 }
 
 impl Rows {
+    fn of_means(means: &[Mean]) -> Self {
+        let mut rows = Self { start: vec![0], ..Self::default() };
+        for vertices in means.iter().map(Mean::vertices) {
+            rows.index.extend_from_slice(vertices);
+            rows.weight.extend(std::iter::repeat_n(1.0 / vertices.len() as f64, vertices.len()));
+            rows.start.push(rows.index.len() as u32);
+        }
+        rows
+    }
+
     #[inline(always)]
     fn range(&self, i: usize) -> Range<usize> {
         self.start[i] as usize..self.start[i + 1] as usize
@@ -132,20 +144,29 @@ impl Transfer {
         Self::new(same_vertex, Parents::Weighted(Rows { start, index, weight }))
     }
 
-    /// Each row takes the mean of its values at two vertices, or at one that is named twice.
-    pub(crate) fn from_midpoints(coarse_rows: usize, ends: Vec<[u32; 2]>) -> Self {
+    /// Each row takes the mean of its values at some coarse vertices.
+    pub(crate) fn from_means(coarse_rows: usize, means: &[Mean]) -> Self {
         let mut same_vertex = vec![0; coarse_rows];
-        for (i, &[a, b]) in ends.iter().enumerate() {
-            if a == b {
-                same_vertex[a as usize] = i as u32;
+        for (mean, i) in means.iter().zip(0..) {
+            if let [a] = mean.vertices() {
+                same_vertex[*a as usize] = i;
             }
         }
-        Self::new(same_vertex, Parents::Edges(ends))
+        if means.iter().any(|mean| mean.vertices().len() > 2) {
+            return Self::new(same_vertex, Parents::Weighted(Rows::of_means(means)));
+        }
+        let ends = |mean: &Mean| match *mean.vertices() {
+            [a, b] => [a, b],
+            [a, ..] => [a, a],
+            [] => unreachable!("a mean is one of vertices"),
+        };
+        Self::new(same_vertex, Parents::Edges(means.iter().map(ends).collect()))
     }
 
     /// The level is its own coarser level.
     pub(crate) fn identity(rows: usize) -> Self {
-        Self::from_midpoints(rows, (0..rows as u32).map(|a| [a, a]).collect())
+        let means: Vec<_> = (0..rows as u32).map(Mean::of_one).collect();
+        Self::from_means(rows, &means)
     }
 
     /// The same with the coarse vertices in another order: number `order[k]` becomes `k`.

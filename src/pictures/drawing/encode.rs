@@ -2,9 +2,10 @@
 
 mod pdf;
 mod png;
+mod runs;
 mod svg;
 
-use super::canvas::{Canvas, Shape};
+use super::canvas::Canvas;
 
 /// What the file of a picture is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,9 +28,8 @@ pub struct EncodingError(#[from] ::png::EncodingError);
 pub struct Drawing(Canvas);
 
 impl std::fmt::Debug for Drawing {
-    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        let [width, height] = self.0.size();
-        write!(f, "Drawing({width} x {height})")
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Drawing")
     }
 }
 
@@ -49,36 +49,6 @@ impl Drawing {
             Format::Pdf => Ok(pdf::encode(&self.0)),
         }
     }
-}
-
-/// Neighbours that can be drawn as one: lines of one pen, areas of one colour.
-fn runs(canvas: &Canvas) -> impl Iterator<Item = &[Shape]> {
-    canvas.shapes().chunk_by(|a, b| match (a, b) {
-        (Shape::Line { width: a, color: c, .. }, Shape::Line { width: b, color: d, .. }) => a == b && c == d,
-        (Shape::Star { color: c, .. }, Shape::Star { color: d, .. }) => c == d,
-        _ => false,
-    })
-}
-
-/// The lines of a run as polylines.
-fn polylines(run: &[Shape]) -> Vec<Vec<[f64; 2]>> {
-    let mut lines: Vec<Vec<[f64; 2]>> = Vec::new();
-    for shape in run {
-        let Shape::Line { ends: [from, to], .. } = shape else { continue };
-        match lines.last_mut() {
-            Some(line) if line.last() == Some(from) => line.push(*to),
-            _ => lines.push(vec![*from, *to]),
-        }
-    }
-    lines
-}
-
-/// The areas of a run.
-fn polygons(run: &[Shape]) -> impl Iterator<Item = &[[f64; 2]]> {
-    run.iter().filter_map(|shape| match shape {
-        Shape::Star { corners, .. } => Some(corners.as_slice()),
-        _ => None,
-    })
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! One surface of the oblique view with its depth, pixel by pixel.
 
-use rayon::prelude::*;
+use crate::parallel::prelude::*;
 
 use super::scene::{Scene, TOUCHING};
 use super::view::View;

@@ -1,6 +1,5 @@
 //! Where the domain is cut, and the solution along the cut.
 
-use super::map::Map;
 use super::scene::Scene;
 use crate::pictures::drawing::raster;
 
@@ -19,10 +18,12 @@ impl Cut {
     /// The cut, at a round coordinate, through the greatest lambda: of several such vertices that one nearest to the centre of
     /// the contact region. Without a force it goes through that centre, without contact through that of the domain; of several
     /// regions it takes the largest, unless they lie side by side.
-    pub(super) fn through(scene: &Scene, map: &Map) -> Cut {
+    ///
+    /// `profile` counts the pixels of the region on each line across an axis.
+    pub(super) fn through(scene: &Scene, profile: impl FnOnce(usize) -> Vec<usize>) -> Cut {
         const NEARLY_SQUARE: f64 = 0.999;
         let along = if scene.aspect(f64::MAX) > NEARLY_SQUARE { 0 } else { 1 };
-        let profile = map.profile(1 - along, |vertex| !scene.touching || scene.in_contact(vertex));
+        let profile = profile(1 - along);
         let lines: Vec<(usize, usize)> = profile.iter().copied().enumerate().collect();
         let area = |region: &[(usize, usize)]| region.iter().map(|(_, count)| count).sum::<usize>();
         let regions = lines.chunk_by(|a, b| (a.1 > 0) == (b.1 > 0));

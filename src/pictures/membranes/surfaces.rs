@@ -31,7 +31,7 @@ pub(super) fn draw(canvas: &mut Canvas, scene: &Scene, section: &Section, room: 
     let lower_style = Style { membrane: 1, color: LOWER, line: LOWER_LINE, from: f64::NEG_INFINITY };
     let upper_style = Style { membrane: 0, color: UPPER, line: UPPER_LINE, from: cut_at };
     let layer = |style: &Style| membrane(scene, section, &view, style, room);
-    let (lower, upper) = rayon::join(|| layer(&lower_style), || layer(&upper_style));
+    let (lower, upper) = crate::parallel::join(|| layer(&lower_style), || layer(&upper_style));
     floor(canvas, scene, cut, &view);
     canvas.bitmap([room.left, room.top].map(|x| x as usize), upper.over(&lower, VEIL));
     names(canvas, &lower, &upper, room);

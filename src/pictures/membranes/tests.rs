@@ -96,7 +96,7 @@ impl Solution {
 fn cut_of(solution: &Solution) -> [f64; 2] {
     let picture = solution.picture("");
     let scene = Scene::new(&picture).expect("valid data");
-    Cut::through(&scene, &Map::new(&scene, MAP)).point(0.5)
+    cut(&scene, &Map::new(&scene, MAP)).point(0.5)
 }
 
 #[test]
@@ -183,7 +183,7 @@ fn the_cut_goes_through_the_greatest_force_and_stays_in_its_dual_cell() {
     assert!((place - y).abs() < 1.0 / (3 * cells) as f64, "{place} for {y}");
     let picture = solution.picture("");
     let scene = Scene::new(&picture).expect("valid data");
-    let section = Section::new(&scene, Cut::through(&scene, &Map::new(&scene, MAP)), 4000);
+    let section = Section::new(&scene, cut(&scene, &Map::new(&scene, MAP)), 4000);
     let greatest = |section: &Section| section.forces().iter().map(|force| force.1).fold(0.0, f64::max);
     assert_eq!(greatest(&section), 2.5);
     let beside = Cut { along: 0, place: y + 1.0 / cells as f64, reach: 0.0 };

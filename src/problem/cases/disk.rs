@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use super::Description;
 use super::decoupled::{Companion, Decoupled};
+use super::description::Description;
 use super::jet::Jet;
 use super::parameter::{MU1, MU2, Parameter, Values};
 use crate::geometry::Interface;

@@ -3,8 +3,8 @@
 use std::f64::consts::{FRAC_PI_4, TAU};
 use std::sync::Arc;
 
-use super::Description;
 use super::decoupled::{Companion, Decoupled};
+use super::description::Description;
 use super::jet::Jet;
 use super::parameter::{MU1, MU2, Parameter};
 use crate::geometry::Interface;

@@ -2,11 +2,10 @@
 
 use std::sync::Arc;
 
-use super::CaseError;
-use super::Description;
 use super::decoupled::{Companion, Decoupled};
+use super::description::Description;
 use super::jet::Jet;
-use super::parameter::{MU1, MU2, Parameter, Values};
+use super::parameter::{CaseError, MU1, MU2, Parameter, Values};
 use crate::geometry::Interface;
 use crate::problem::Domain;
 

@@ -6,6 +6,7 @@ use crate::text::{Number, excerpt, nearest};
 
 /// Why there is no such exact solution.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum CaseError {
     /// No case has this name.
     #[error("there is no case `{name}`; the nearest is `{nearest}` (known: {known})")]

@@ -1,6 +1,6 @@
 //! Cuts a source into numbers, names and symbols.
 
-use super::ExpressionError;
+use super::error::ExpressionError;
 use super::program::Instruction;
 use crate::text::excerpt;
 
@@ -70,7 +70,7 @@ const SYMBOLS: [(&str, Result<Token, &str>); 37] = [
     ("&&", Ok(Token::Operator(Level::And, Instruction::And))),
     ("&", Err("&&")),
     ("||", Ok(Token::Operator(Level::Or, Instruction::Or))),
-    ("|", Err("||")),
+    ("|", Err("abs(...)")),
     ("[", Err("(")),
     ("]", Err(")")),
     ("{", Err("(")),
@@ -146,6 +146,7 @@ impl<'a> Lexer<'a> {
         let column = self.column;
         match SYMBOLS.into_iter().find(|(symbol, _)| self.rest.starts_with(symbol)) {
             Some((symbol, Ok(token))) => Ok(self.take(symbol.len(), token)),
+            Some(("|", Err(_))) => Err(ExpressionError::Bar { column }),
             Some((symbol, Err(instead))) => Err(ExpressionError::ForeignSymbol { symbol, instead, column }),
             None => Err(ExpressionError::UnknownCharacter { character, column }),
         }

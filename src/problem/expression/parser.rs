@@ -4,10 +4,10 @@
 
 use std::f64::consts::PI;
 
-use super::ExpressionError;
+use super::error::ExpressionError;
 use super::lexer::{Level, Lexeme, Lexer, Token};
 use super::program::{Builder, Instruction, Program};
-use crate::text::nearest;
+use crate::text::meant;
 
 /// How many arguments a function takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -294,20 +294,36 @@ fn remedy(name: &str) -> String {
         "log2" => "write `ln(...)/ln(2)`".to_string(),
         "pow" => "write `a^b`".to_string(),
         "e" => "write `exp(1)`".to_string(),
+        "sgn" | "sign" | "signum" => "write `if(a > 0, 1, if(a < 0, -1, 0))`".to_string(),
+        "step" | "heaviside" | "Heaviside" => "write `if(a < 0, 0, 1)`".to_string(),
+        "fabs" => "write `abs(a)`".to_string(),
+        "sqr" | "square" => "write `a^2`".to_string(),
+        "cbrt" => "write `a^(1/3)`, where a is not negative".to_string(),
+        "hypot" => "write `sqrt(a^2 + b^2)`".to_string(),
+        "cot" => "write `1/tan(a)`".to_string(),
+        "sec" => "write `1/cos(a)`".to_string(),
+        "csc" => "write `1/sin(a)`".to_string(),
+        "asinh" | "arcsinh" => "write `ln(a + sqrt(a^2 + 1))`".to_string(),
+        "acosh" | "arccosh" => "write `ln(a + sqrt(a^2 - 1))`".to_string(),
+        "atanh" | "arctanh" => "write `ln((1 + a)/(1 - a))/2`".to_string(),
+        "where" | "ifelse" | "iif" | "piecewise" => "write `if(condition, a, b)`".to_string(),
+        "floor" | "ceil" | "round" | "mod" => {
+            "there are no such steps: write them by `if(condition, a, b)`".to_string()
+        }
+        "true" | "True" => "write `1`".to_string(),
+        "false" | "False" => "write `0`".to_string(),
         "xy" => "for a product write `x*y`".to_string(),
-        _ => match meant(name) {
+        _ => match known_name(name) {
             Some(known) => format!("did you mean `{known}`?"),
             None => "the variables are `x` and `y`".to_string(),
         },
     }
 }
 
-/// The known name that is nearest, when it differs in at most a third of the letters, or in one.
-fn meant(name: &str) -> Option<&'static str> {
+/// The known name that was meant.
+fn known_name(name: &str) -> Option<&'static str> {
     let functions = FUNCTIONS.iter().map(|(known, ..)| *known);
     let values = VALUES.iter().map(|(known, _)| *known);
     let words = ["and", "or", "not"];
-    nearest(name, functions.chain(values).chain(words))
-        .filter(|&(_, slips)| slips <= (name.len() / 3).max(1) && slips < name.len())
-        .map(|(known, _)| known)
+    meant(name, functions.chain(values).chain(words))
 }

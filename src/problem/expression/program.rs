@@ -203,6 +203,14 @@ pub(super) struct Program {
 }
 
 impl Program {
+    /// Its value, when all of it has been folded.
+    pub(super) fn constant(&self) -> Option<f64> {
+        match self.code[..] {
+            [Instruction::Number(value)] => Some(value),
+            _ => None,
+        }
+    }
+
     pub(super) fn eval(&self, x: f64, y: f64) -> f64 {
         if self.depth <= SHORT_DEPTH {
             self.eval_within::<SHORT_DEPTH>(x, y)

@@ -29,7 +29,8 @@ fn with_bounds() -> QpProblem {
     };
     let p = matrix((2, 2), &[(0, 0, 2.0 / 3.0), (0, 1, -0.1), (1, 1, 1e-300)]);
     let a = matrix((3, 2), &[(0, 0, 1.0), (1, 0, -1e300), (2, 1, 1.0 / 7.0)]);
-    QpProblem::new(p, vec![0.1, -0.2], a, vec![-1.0 / 3.0, 0.0, 2e-17]).unwrap()
+    let qp = QpProblem::new(p, vec![0.1, -0.2], a, vec![-1.0 / 3.0, 0.0, 2e-17]).unwrap();
+    qp.with_constant(-1.0 / 7.0).unwrap()
 }
 
 /// Row, column and value of all entries of a full matrix given by its upper triangle.
@@ -91,7 +92,13 @@ fn an_archive_holds_the_program_and_the_mesh_to_the_last_bit() {
         assert_eq!(archive.array("points"), (vec![25, 2], points));
         let triangles: Vec<i64> = mesh.triangles().iter().flatten().map(|&a| a as i64).collect();
         assert_eq!(archive.array("triangles"), (vec![32, 3], triangles));
-        assert_eq!(archive.0.len(), 14, "and nothing else");
+        let numbers = [("constant", qp.constant()), ("displacement_scale", qp.primal_scale())];
+        for (name, value) in numbers.into_iter().chain([("force_scale", qp.dual_scale())]) {
+            assert_eq!(archive.array(name), (vec![], vec![value]), "{name}");
+        }
+        let scales = d.scales();
+        assert_eq!(qp.dual_scale(), scales.force_density * scales.dual_area);
+        assert_eq!(archive.0.len(), 17, "and nothing else");
     });
 }
 
@@ -120,7 +127,8 @@ fn matrix_market_files_hold_the_program_to_the_last_bit() {
     let check = |qp: &QpProblem| {
         assert_eq!(read_matrix(&matrix_market(qp, QpPart::P)), both_triangles(qp.p_upper()));
         assert_eq!(read_matrix(&matrix_market(qp, QpPart::A)), *qp.a());
-        for (part, vector) in [(QpPart::Q, qp.q()), (QpPart::B, qp.b())] {
+        let constant = [qp.constant()];
+        for (part, vector) in [(QpPart::Q, qp.q()), (QpPart::B, qp.b()), (QpPart::Constant, &constant)] {
             let text = matrix_market(qp, part);
             let mut lines = text.lines();
             assert_eq!(lines.next(), Some("%%MatrixMarket matrix array real general"));
@@ -142,7 +150,7 @@ fn the_symmetric_matrix_is_written_by_its_lower_triangle() {
 
 #[test]
 fn every_part_has_its_letter() {
-    assert_eq!(QpPart::ALL.map(QpPart::letter), ['P', 'A', 'q', 'b']);
+    assert_eq!(QpPart::ALL.map(QpPart::letter), ['P', 'A', 'q', 'b', 'c']);
 }
 
 /// The data of a QPS file.
@@ -153,6 +161,7 @@ struct Qps {
     q: Vec<f64>,
     a: Vec<(usize, usize, f64)>,
     b: Vec<f64>,
+    constant: f64,
     p: Vec<(usize, usize, f64)>,
     sections: Vec<String>,
 }
@@ -174,6 +183,7 @@ impl Qps {
                 ("COLUMNS", &[column, row, value]) => {
                     qps.a.push((number(row), number(column), value.parse().unwrap()));
                 }
+                ("RHS", &["rhs", "obj", value]) => qps.constant = -value.parse::<f64>().unwrap(),
                 ("RHS", &["rhs", row, value]) => {
                     qps.b.resize(number(row) + 1, 0.0);
                     *qps.b.last_mut().unwrap() = value.parse().unwrap();
@@ -203,6 +213,8 @@ fn a_qps_file_holds_the_program_to_the_last_bit() {
         assert_eq!(found.q, qp.q());
         found.b.resize(constraints, 0.0);
         assert_eq!(found.b, qp.b());
+        assert_eq!(found.constant, qp.constant());
+        assert_ne!(found.constant, 0.0);
         let entries = |matrix: &CsMat<f64>| {
             matrix.iter().map(|(&v, (row, column))| (row, column, v)).collect::<Vec<_>>()
         };

@@ -46,7 +46,7 @@ fn meshes() -> Vec<Mesh> {
         l_shape(1.0, 16, Pattern::Right).unwrap(),
         l_shape(1.0, 16, Pattern::Right).unwrap().graded([0.0, 0.0], 2.0).unwrap(),
         generate(&unit, MeshSize::EdgeLength { size: 0.04, min_angle: 25.0 }).unwrap(),
-        irregular(6).refine().mesh.refine().mesh,
+        irregular(6).refine().unwrap().mesh.refine().unwrap().mesh,
     ]
 }
 
@@ -177,14 +177,39 @@ fn on_stretched_triangles_the_levels_are_algebraic() {
     let mesh = rectangle([0.0, 0.0], [1.0, 0.01], [64; 2], Pattern::Right).unwrap();
     let problem = ContactProblem::builder().tension(1.0, 3.0).load(-1.5e5, 1e5).height(0.1).build().unwrap();
     let d = Discretization::new(&problem, mesh.clone()).unwrap();
-    let status = |levels| {
-        let candidate = Multigrid.solve_on(levels, &d, &options(), Instant::now()).expect("it runs");
+    let status = |levels: fn(&Discretization) -> Hierarchy| {
+        let candidate = solve_on(&levels(&d), &d, &options(), Instant::now()).expect("it runs");
         candidate.statistics.status
     };
     assert_eq!(status(Hierarchy::new), Status::Stalled);
     assert_eq!(status(Hierarchy::algebraic), Status::Solved);
     let candidate = solve_by(&mut Multigrid, &d, &options());
+    let tried = &candidate.statistics.stalled;
+    assert!(tried.len() == 1 && tried[0].iterations > 0, "what stalled is recorded: {tried:?}");
+    // Once it has gone over, it stays there; and is the solver that it would be anew.
+    let mut multigrid = Multigrid;
+    let mut prepared = multigrid.prepare(&d);
+    let [first, again] = [(); 2].map(|()| prepared.solve(&options()).expect("it runs"));
+    assert_eq!(first.statistics.stalled, *tried);
+    assert!(again.statistics.stalled.is_empty());
+    assert_eq!(first.displacement, candidate.displacement);
+    assert_eq!(again.displacement, candidate.displacement);
     assert!(certify(&d, candidate, TOLERANCE).is_ok());
+}
+
+/// Levels that are kept are those that would be made anew, whatever was asked for before.
+#[test]
+fn a_prepared_solver_finds_what_the_solver_finds() {
+    let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [32; 2], Pattern::Right).unwrap();
+    let d = Discretization::new(&problem([1.0, 2.0], 0.05), mesh).unwrap();
+    let mut multigrid = Multigrid;
+    let mut prepared = multigrid.prepare(&d);
+    for tolerance in [1e-3, 1e-9, 1e-6] {
+        let options = SolverOptions { tolerance, ..SolverOptions::default() };
+        let found = prepared.solve(&options).expect("it runs");
+        assert_eq!(found.displacement, solve_by(&mut Multigrid, &d, &options).displacement);
+        assert_eq!(certify(&d, found, 1e-9).is_ok(), tolerance == 1e-9, "the tolerance is that asked for");
+    }
 }
 
 /// Slow progress is progress, as on 2 x 8 flat crossed cells; none is none.
@@ -192,7 +217,7 @@ fn on_stretched_triangles_the_levels_are_algebraic() {
 fn a_slow_pace_is_kept_and_none_is_given_up() {
     let mesh = rectangle([0.0, 0.0], [1.55, 0.5], [2, 8], Pattern::Crossed).unwrap();
     let d = Discretization::new(&problem([1.0, 1.0], 0.0), mesh.clone()).unwrap();
-    let slow = Multigrid.solve_on(Hierarchy::new, &d, &options(), Instant::now()).expect("it runs");
+    let slow = solve_on(&Hierarchy::new(&d), &d, &options(), Instant::now()).expect("it runs");
     assert_eq!(slow.statistics.status, Status::Solved);
     assert!(slow.statistics.iterations > 2 * CYCLES, "it is slow: {}", slow.statistics.iterations);
 
@@ -267,7 +292,7 @@ fn truncated_matrices_follow_every_change_of_the_contact_set() {
     const ROUNDING: f64 = 1e-12;
     let problem = problem([1.0, 1.0], 0.05);
     let square = rectangle([0.0, 0.0], [1.0, 1.0], [16; 2], Pattern::Right).unwrap();
-    for mesh in [square, irregular(4).refine().mesh, irregular(13)] {
+    for mesh in [square, irregular(4).refine().unwrap().mesh, irregular(13)] {
         let d = Discretization::new(&problem, mesh.clone()).unwrap();
         let hierarchy = Hierarchy::new(&d);
         let mut truncation = Truncation::new(&hierarchy);
@@ -320,7 +345,7 @@ fn truncated_rows_have_no_part_in_a_stencil() {
     let changed: Vec<u32> = (0..frozen.len() as u32).filter(|&i| frozen[i as usize]).collect();
     truncation.update(finest, &frozen, &changed);
     assert!(defect(truncation.values(finest - 1)) < ROUNDING);
-    // The twin: the rows are changed, but nobody tells the runs.
+    // The negative test: the rows are changed, but nobody tells the runs.
     let mut unaware = level.values.clone();
     unaware.off_diagonal.clone_from(&truncation.values(finest - 1).off_diagonal);
     assert!(defect(&unaware) > 0.1);
@@ -337,7 +362,7 @@ proptest! {
         height in 0.0..0.5f64,
         stiff in 0.01..100.0f64,
     ) {
-        let mesh = (0..refinements).fold(irregular(cells), |mesh, _| mesh.refine().mesh);
+        let mesh = (0..refinements).fold(irregular(cells), |mesh, _| mesh.refine().unwrap().mesh);
         let f1 = Function::from_fn(move |x: f64, y: f64| loads[0] + loads[1] * (7.0 * x * y).sin());
         let f2 = Function::from_fn(move |x: f64, y: f64| loads[2] + loads[3] * (5.0 * x - 3.0 * y).cos());
         let problem = ContactProblem::builder().tension(1.0, stiff).load(f1, f2).height(height).build().unwrap();

@@ -1,5 +1,5 @@
-use std::cell::Cell;
-use std::rc::Rc;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::*;
 use crate::mesh::Mesh;
@@ -38,7 +38,7 @@ fn rows(solver: impl ContactSolver + 'static, options: SolverOptions) -> Vec<Row
 /// Solves, and then says or does something else.
 struct Altered<F>(F);
 
-impl<F: FnMut(Candidate) -> Result<Candidate, SolverError>> ContactSolver for Altered<F> {
+impl<F: FnMut(Candidate) -> Result<Candidate, SolverError> + Send> ContactSolver for Altered<F> {
     fn name(&self) -> &str {
         "altered"
     }
@@ -69,7 +69,13 @@ fn the_slope_is_the_exponent_of_the_certified_rows_of_one_curve() {
 
 #[test]
 fn a_solved_problem_is_a_certified_row_whose_figures_fit() {
-    let rows = rows(ActiveSet, SolverOptions { time_limit: Some(AMPLE), ..SolverOptions::default() });
+    let rows = rows(
+        ActiveSet,
+        SolverOptions {
+            time_limit: Some(TimeLimit::from_seconds(AMPLE).unwrap()),
+            ..SolverOptions::default()
+        },
+    );
     assert_eq!(rows.len(), 2);
     for (row, vertices) in rows.iter().zip([25, 81]) {
         assert_eq!((row.vertices, row.certified, row.status.as_str()), (vertices, true, "solved"));
@@ -103,11 +109,11 @@ fn a_wrong_candidate_is_not_certified_whatever_it_says() {
 
 #[test]
 fn one_wrong_run_of_several_is_the_one_that_counts() {
-    let runs = Rc::new(Cell::new(0));
+    let runs = Arc::new(AtomicUsize::new(0));
     let counted = runs.clone();
     let second_is_wrong = Altered(move |mut candidate: Candidate| {
-        counted.set(counted.get() + 1);
-        if counted.get() == 2 {
+        counted.fetch_add(1, Ordering::Relaxed);
+        if counted.load(Ordering::Relaxed) == 2 {
             candidate.displacement[0][12] += 1.0;
         }
         Ok(candidate)
@@ -115,7 +121,7 @@ fn one_wrong_run_of_several_is_the_one_that_counts() {
     let rows = rows(second_is_wrong, SolverOptions::default());
     assert!(!rows[0].certified);
     assert!(rows[1].certified);
-    assert_eq!(runs.get(), 2 + REPEAT);
+    assert_eq!(runs.load(Ordering::Relaxed), 2 + REPEAT);
 }
 
 #[test]
@@ -129,15 +135,18 @@ fn a_solver_that_cannot_run_is_a_row_with_its_message() {
 
 #[test]
 fn who_exceeds_the_time_limit_is_not_tried_on_larger_meshes_of_that_problem() {
-    let runs = Rc::new(Cell::new(0));
+    let runs = Arc::new(AtomicUsize::new(0));
     let counted = runs.clone();
     let slow: Box<dyn ContactSolver> = Box::new(Altered(move |mut candidate: Candidate| {
-        counted.set(counted.get() + 1);
+        counted.fetch_add(1, Ordering::Relaxed);
         candidate.statistics.status = Status::TimeLimit;
         Ok(candidate)
     }));
     let quick: Box<dyn ContactSolver> = Box::new(ActiveSet);
-    let options = SolverOptions { time_limit: Some(AMPLE), ..SolverOptions::default() };
+    let options = SolverOptions {
+        time_limit: Some(TimeLimit::from_seconds(AMPLE).unwrap()),
+        ..SolverOptions::default()
+    };
     let mut comparison = Comparison::new(vec![("slow".into(), slow), ("quick".into(), quick)], options);
     let (problem, meshes) = (square_problem().expect("valid"), meshes());
     let d = discretizations(&problem, &meshes);
@@ -150,15 +159,16 @@ fn who_exceeds_the_time_limit_is_not_tried_on_larger_meshes_of_that_problem() {
     assert_eq!(status(skipped), [SKIPPED, "solved"]);
     assert_eq!(status(on("another", 1)), ["time_limit", "solved"]);
     assert_eq!(status(on(SQUARE, 0)), ["time_limit", "solved"], "a mesh that is no larger is tried again");
-    assert_eq!(runs.get(), 3 * REPEAT);
+    assert_eq!(runs.load(Ordering::Relaxed), 3 * REPEAT);
 }
 
 #[test]
 fn a_total_above_the_limit_exceeds_it_too() {
+    let limit = |seconds| Some(TimeLimit::from_seconds(seconds).unwrap());
     let limited = |limit| SolverOptions { time_limit: limit, ..SolverOptions::default() };
     let row = timed("a", 100, 2.0);
-    assert!(row.exceeds(&limited(Some(1.0))));
-    assert!(!row.exceeds(&limited(Some(3.0))) && !row.exceeds(&limited(None)));
+    assert!(row.exceeds(&limited(limit(1.0))));
+    assert!(!row.exceeds(&limited(limit(3.0))) && !row.exceeds(&limited(None)));
 }
 
 #[cfg(feature = "cli")]

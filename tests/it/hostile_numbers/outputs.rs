@@ -144,8 +144,12 @@ fn exported(d: &Discretization, bounded: &Bounded) -> Result<(), String> {
     let mut qps = Vec::new();
     write_qps(&qp, &mut qps).map_err(|error| format!("problem.qps: {error}"))?;
     let qps = String::from_utf8(qps).map_err(|error| error.to_string())?;
-    let of_qps: Vec<f64> =
-        qps.lines().filter_map(|line| line.trim().split_once(" obj ")).map(|(_, q)| number(q)).collect();
+    let of_objective = qps.lines().filter_map(|line| line.trim().split_once(" obj "));
+    let (constants, columns): (Vec<_>, Vec<_>) = of_objective.partition(|(name, _)| *name == "rhs");
+    if constants.first().map_or(0.0, |(_, minus)| -number(minus)) != qp.constant() {
+        return Err("the constant is not read back as it was".into());
+    }
+    let of_qps: Vec<f64> = columns.into_iter().map(|(_, q)| number(q)).collect();
     let mut mtx = Vec::new();
     write_matrix_market(&qp, QpPart::Q, &mut mtx).map_err(|error| format!("problem_q.mtx: {error}"))?;
     let mtx = String::from_utf8(mtx).map_err(|error| error.to_string())?;
@@ -185,7 +189,7 @@ fn archive(arrays: &[(&str, &[f64])]) -> Vec<u8> {
     zip.finish().expect("memory is writable").into_inner()
 }
 
-/// The twin: a bound that is no number is seen.
+/// The negative test: a bound that is no number is seen.
 #[test]
 fn a_number_that_is_none_is_seen() {
     let hostile = &super::solvable()[0];

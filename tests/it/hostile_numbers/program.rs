@@ -111,7 +111,7 @@ fn every_case_file_is_solved_or_refused_as_it_should_be() {
     assert_eq!(complaints, [""; 0]);
 }
 
-/// The twin: a case that is solved where an error is expected, and one that is refused where none is.
+/// The negative test: a case that is solved where an error is expected, and one that is refused where none is.
 #[test]
 fn the_other_outcome_is_seen() {
     assert!(complaint(&(&[], &["other units"])).is_err());

@@ -83,7 +83,7 @@ fn powers_of_two_scale_the_solution_exactly() {
     }
 }
 
-/// The twin: a factor that is no power of two moves the last bits.
+/// The negative test: a factor that is no power of two moves the last bits.
 #[test]
 fn other_factors_are_seen_in_the_last_bits() {
     let mesh = unit_polygon();

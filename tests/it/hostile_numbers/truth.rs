@@ -15,7 +15,7 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 fn distance_and_bound(hostile: &Hostile, factor: f64) -> Result<[f64; 2], String> {
     let d = hostile.discretize();
     let coarse = hostile.solve(&d, &mut ActiveSet)?;
-    let Refinement { mesh, parents } = hostile.mesh.refine();
+    let Refinement { mesh, parents } = hostile.mesh.refine().map_err(|error| error.to_string())?;
     let finer = Hostile { name: hostile.name, problem: hostile.problem.clone(), mesh };
     let d = finer.discretize();
     let fine = finer.solve(&d, &mut ActiveSet)?;

@@ -135,7 +135,7 @@ fn it_holds_to_quadrature_on_three_levels() {
         for cells in [16, 32, 64] {
             let identity = Identity::new(&exact, cells);
             assert!(identity.defect() < QUADRATURE, "{case}, {cells}: {:e}", identity.defect());
-            // The twin: a flux that is a thousandth off.
+            // The negative test: a flux that is a thousandth off.
             let other = Identity { left: 1.001f64.powi(2) * identity.left, ..identity };
             assert!(other.defect() > 100.0 * QUADRATURE, "{case}, {cells}: {:e}", other.defect());
             // And without the contact error; in the annulus, where neither gap nor action jumps, that is below the quadrature.

@@ -86,8 +86,8 @@ fn turned_moved_and_in_any_order() {
             matches!(found, MeshError::HangingVertex { vertex, .. } if vertex == number[4]),
             "seed {seed}: {found}"
         );
-        let mended = mesh((renumbered_points, shuffle([side(2, &[4]), side(3, &[4])].concat())));
-        assert!(mended.is_ok(), "seed {seed}: {}", mended.unwrap_err());
+        let fixed = mesh((renumbered_points, shuffle([side(2, &[4]), side(3, &[4])].concat())));
+        assert!(fixed.is_ok(), "seed {seed}: {}", fixed.unwrap_err());
     }
 }
 

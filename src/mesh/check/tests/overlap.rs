@@ -16,11 +16,11 @@ fn ring(centre: [f64; 2], radius: f64, corners: usize) -> Vec<[f64; 2]> {
 fn a_fold_and_a_third_triangle_at_an_edge() {
     let points = [[0.0, 0.0], [1.0, 0.0], [0.5, 1.0], [0.6, 0.8], [0.5, -1.0]];
     let message = "triangles 0 and 1 overlap at their common edge (vertices 0, 1): an edge has one triangle on each side";
-    let mended = || parts(&points, &[[0, 1, 2], [0, 1, 4]]);
-    assert_refused(parts(&points, &[[0, 1, 2], [0, 1, 3]]), message, Some(0), mended());
-    assert_refused(parts(&points, &[[0, 1, 2], [1, 0, 3], [4, 1, 0]]), message, Some(0), mended());
+    let fixed = || parts(&points, &[[0, 1, 2], [0, 1, 4]]);
+    assert_refused(parts(&points, &[[0, 1, 2], [0, 1, 3]]), message, Some(0), fixed());
+    assert_refused(parts(&points, &[[0, 1, 2], [1, 0, 3], [4, 1, 0]]), message, Some(0), fixed());
     let message = message.replace("1 overlap", "2 overlap");
-    assert_refused(parts(&points, &[[0, 1, 2], [4, 0, 1], [1, 0, 3]]), &message, Some(0), mended());
+    assert_refused(parts(&points, &[[0, 1, 2], [4, 0, 1], [1, 0, 3]]), &message, Some(0), fixed());
 }
 
 /// Every edge has a triangle on each side, or lies on the boundary, but the fan goes twice round its centre.

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use super::Pattern;
 use super::numbering::GridNumbering;
+use super::pattern::Pattern;
 use crate::mesh::Parents;
 
 /// The ancestry of a grid, from the coarsest one; the cells `(i, j)` that belong to the domain are those `inside`.

@@ -1,6 +1,6 @@
 //! The numbering of the vertices of a grid.
 
-use super::Pattern;
+use super::pattern::Pattern;
 
 /// No vertex is there.
 const OUTSIDE: usize = usize::MAX;

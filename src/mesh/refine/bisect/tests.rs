@@ -235,7 +235,7 @@ fn everything_marked_is_uniform_refinement() {
         let all: Vec<usize> = (0..bisection.mesh().triangles().len()).collect();
         let before = bisection.clone();
         bisection.refine(&all).unwrap();
-        uniform = uniform.refine().mesh;
+        uniform = uniform.refine().unwrap().mesh;
         let counts = |mesh: &Mesh| (mesh.points().len(), mesh.triangles().len());
         assert_eq!(counts(bisection.mesh()), counts(&uniform));
         let found = bisection.mesh().quality();
@@ -250,7 +250,7 @@ fn everything_marked_is_uniform_refinement() {
 #[test]
 fn every_step_adds_a_level_to_the_ancestry() {
     let coarse = irregular(3);
-    let mut bisection = Bisection::new(coarse.refine().mesh);
+    let mut bisection = Bisection::new(coarse.refine().unwrap().mesh);
     let mut random = Random::new(5);
     for step in 1..6 {
         let marked = some(&mut random, bisection.mesh().triangles().len());
@@ -375,7 +375,7 @@ fn triangles_too_small_for_the_checks_are_refused() {
         assert!(bisection.refine(&far).is_ok(), "elsewhere they are large enough");
 
         // Without the limit, vertices come too close for the checks, and triangles lose their areas in the end.
-        bisection.shortest = 0.0;
+        bisection.smallest.edge = 0.0;
         if corner > 0.0 {
             let mut flatten = || {
                 let marked = around(bisection.mesh(), [corner; 2]);

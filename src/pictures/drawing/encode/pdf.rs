@@ -7,7 +7,7 @@ use flate2::write::ZlibEncoder;
 use pdf_writer::types::{LineCapStyle, LineJoinStyle};
 use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref};
 
-use super::{polygons, polylines, runs};
+use super::runs::{polygons, polylines, runs};
 use crate::pictures::drawing::canvas::{Bitmap, Canvas, FINE, Shape};
 use crate::pictures::drawing::color::Rgb;
 use crate::pictures::drawing::font::Stroke;

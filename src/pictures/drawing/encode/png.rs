@@ -1,7 +1,7 @@
 //! Pixels: everything is painted on a fine grid, and averaged down.
 
+use crate::parallel::prelude::*;
 use png::{BitDepth, ColorType, Compression, Encoder, EncodingError};
-use rayon::prelude::*;
 
 use crate::pictures::drawing::canvas::{Bitmap, Canvas, FINE, Shape};
 use crate::pictures::drawing::color::{PAPER, Rgb, mix};

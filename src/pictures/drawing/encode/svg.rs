@@ -7,7 +7,7 @@ use base64::engine::general_purpose::STANDARD;
 use png::EncodingError;
 
 use super::png::encode_bitmap;
-use super::{polygons, polylines, runs};
+use super::runs::{polygons, polylines, runs};
 use crate::pictures::drawing::canvas::{Canvas, FINE, Shape};
 use crate::pictures::drawing::color::{PAPER, Rgb};
 use crate::pictures::drawing::font::Stroke;

@@ -241,7 +241,7 @@ proptest! {
     }
 }
 
-/// The negative twin: with parentheses left out where they matter, the values differ.
+/// The negative test: with parentheses left out where they matter, the values differ.
 #[test]
 fn a_tree_without_its_parentheses_is_another() {
     let sum = Tree::Infix("+", Box::new([Tree::X, Tree::Y]));

@@ -1,0 +1,355 @@
+//! `membranes adapt`.
+
+use std::io::{self, BufReader};
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::solution::{A_SOLUTION, left_out_line, write_picture, write_solution};
+use crate::action::ContactSolution;
+use crate::cli::args::AdaptArguments;
+use crate::cli::case::{BackendName, CaseFile};
+use crate::cli::failure::Failure;
+use crate::cli::run::clock::Clock;
+use crate::cli::run::files::{CHECKPOINT, HISTORY, LEVELS, MEMBRANES, MESH, Part, SOLUTION, SUMMARY};
+use crate::cli::run::folder::{Claim, Folder};
+use crate::cli::run::input::{self, Input};
+use crate::cli::run::levels::{GOES_ON, KEPT, Levels, MEMORY, TIME, failure, settings, too_late};
+use crate::cli::run::memory::Memory;
+use crate::cli::run::progress::Progress;
+use crate::cli::run::setup::{Setup, options, solver, too_early, unused_groups};
+use crate::cli::run::watch::Watch;
+use crate::cli::terminal::{grouped, print};
+use crate::estimate::LoadWarning;
+use crate::mesh::{DualMesh, Mesh, MeshError, SubTriangulation};
+use crate::output::{Seconds, Summary, read_checkpoint, write_checkpoint};
+use crate::pictures::{Drawing, MeshPicture, RatesPicture, Series, render_rates, render_triangulation};
+use crate::study::{AdaptiveLevel, AdaptiveStudy, StudyError, exponent};
+
+/// The slope of the best possible rate: the error falls like the root of the number of vertices.
+const OPTIMAL: [f64; 1] = [-0.5];
+
+/// How much larger the next mesh is taken to be while only one is known.
+const GROWTH: f64 = 2.0;
+
+/// The solution of the last level, the ancestry of the mesh and its bisections come on top of what a solve needs: 2292 bytes a
+/// vertex at 1.3 million in place of 890.
+const MORE_MEMORY: f64 = 2.6;
+
+/// Seconds that writing the results takes: two pictures, and what grows with the mesh.
+const WRITING: f64 = 1.0;
+const WRITING_PER_VERTEX: f64 = 4e-6;
+
+/// Why a run ends.
+enum Stop {
+    Reached,
+    Vertices,
+    Time,
+    Memory,
+    TooSmall(MeshError),
+}
+
+pub(crate) fn run(arguments: &AdaptArguments, watch: &Watch) -> Result<(), Failure> {
+    let clock = Clock::new(arguments.time_limit);
+    clock.watch(watch, too_early(&arguments.case.path));
+    let progress = Progress::new(arguments.case.quiet);
+    let mut setup = Setup::new(&arguments.case, &progress)?;
+    if let Some(backend) = arguments.backend {
+        setup.case.solver.backend = backend;
+    }
+    setup.check_memory(setup.case.solver.backend)?;
+    check_first_mesh(&setup, arguments.max_vertices)?;
+    let folder = claim(arguments, &setup, watch)?;
+    let kept = Levels { folder: &folder, table: LEVELS, picture: HISTORY };
+    let mut levels: Vec<AdaptiveLevel> = kept.so_far();
+    progress.stage("going on from the last level");
+    let (mut study, known) = resumed(&setup, &folder, levels.len())?;
+    levels.truncate(known);
+
+    let limits = Limits::new(arguments, clock, &setup);
+    let name = setup.name.clone();
+    clock.watch(watch, move || too_late(&name));
+    let mut seconds = levels.last().map_or(0.0, |last| last.solve_seconds + last.bound_seconds);
+    let stop = loop {
+        if let Some(stop) = limits.stop(&levels, seconds) {
+            break stop;
+        }
+        let start = Instant::now();
+        progress.stage(stage(&levels));
+        study.set_time_limit(clock.of_solver(setup.case.solver.time_limit));
+        match study.next_level() {
+            Ok(level) => levels.push(level),
+            Err(StudyError::Mesh(error @ MeshError::TooSmall { .. })) => break Stop::TooSmall(error),
+            Err(error) if clock.has_stopped(&error) => break Stop::Time,
+            Err(error) => return Err(failure(&setup.name, &error, &setup.node_tags)),
+        }
+        kept.write(&levels)?;
+        if let Some(checkpoint) = study.checkpoint() {
+            folder.write(CHECKPOINT, |out| write_checkpoint(&checkpoint, out))?;
+        }
+        seconds = start.elapsed().as_secs_f64();
+    };
+    watch.lift();
+    progress.stage("writing the results");
+    if study.solution().is_none() {
+        (study, _) = resumed(&setup, &folder, levels.len())?;
+    }
+    let left_out = write_results(&folder, &setup, &study, &levels, &clock)?;
+    drop(progress);
+    if !arguments.case.quiet {
+        let warnings = study.solution().map_or(&[][..], |(_, bound)| &bound.warnings);
+        let table = table(&setup.case.title, &levels, warnings, folder.path(), &left_out);
+        print(&(table + &unused_groups(&setup.groups)))?;
+    }
+    verdict(&setup.name, arguments, &stop, &levels)
+}
+
+/// Refuses a budget that the first mesh exceeds already.
+fn check_first_mesh(setup: &Setup, most: usize) -> Result<(), Failure> {
+    let first = setup.family.mesh().points().len();
+    if first <= most {
+        return Ok(());
+    }
+    let [first, most] = [first, most].map(grouped);
+    let problem = format!("the first mesh has {first} vertices, above --max-vertices {most}");
+    Err(Failure::Input(format!("{}: {problem}: allow more, or make it coarser", setup.name)))
+}
+
+/// The folder: levels of other settings stay, and the solution of `solve` for the same case gives way to a better one.
+fn claim(arguments: &AdaptArguments, setup: &Setup, watch: &Watch) -> Result<Folder, Failure> {
+    let path = arguments.output.folder(&arguments.case.path);
+    let claim = |part, settings| Claim {
+        case: &setup.id,
+        part,
+        settings,
+        overwrite: arguments.output.overwrite,
+        says: KEPT,
+    };
+    Folder::claim(&path, &claim(Part::Adapt, settings(setup)), watch)?;
+    Folder::claim(&path, &claim(Part::Solution, A_SOLUTION.into()), watch)
+}
+
+fn study(setup: &Setup) -> AdaptiveStudy {
+    let CaseFile { problem, exact, solver: settings, .. } = &setup.case;
+    AdaptiveStudy::new(
+        problem.clone(),
+        setup.case.domain().cloned(),
+        exact.clone(),
+        setup.family.mesh().clone(),
+        solver(settings.backend),
+        options(settings),
+        settings.tolerance,
+    )
+}
+
+/// The study at the last of `levels` known levels that its checkpoint belongs to, and how many levels that are.
+fn resumed(setup: &Setup, folder: &Folder, levels: usize) -> Result<(AdaptiveStudy, usize), Failure> {
+    let mut study = study(setup);
+    let path = folder.path().join(CHECKPOINT);
+    let file = match input::open(&path, Input::Arrays, setup.memory) {
+        Ok(file) => file,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok((study, 0)),
+        Err(error) => {
+            let remedy = "remove it, or name another folder with --out";
+            return Err(Failure::Input(format!("{}: {error}; {remedy}", path.display())));
+        }
+    };
+    // With a checkpoint that is broken or of other levels, the run starts anew.
+    let Ok(checkpoint) = read_checkpoint(BufReader::new(file)) else { return Ok((study, 0)) };
+    let known = checkpoint.marked.len() + 1;
+    let fits = known <= levels
+        && study.resume(checkpoint).map_err(|error| failure(&setup.name, &error, &setup.node_tags))?;
+    Ok((study, if fits { known } else { 0 }))
+}
+
+/// What the run may take.
+struct Limits {
+    tolerance: f64,
+    vertices: f64,
+    memory: Memory,
+    backend: BackendName,
+    clock: Clock,
+}
+
+impl Limits {
+    fn new(arguments: &AdaptArguments, clock: Clock, setup: &Setup) -> Self {
+        Self {
+            tolerance: arguments.tolerance,
+            vertices: arguments.max_vertices as f64,
+            memory: setup.memory,
+            backend: setup.case.solver.backend,
+            clock,
+        }
+    }
+
+    /// Whether to stop, judging from how the levels have grown and how many seconds the last one has taken.
+    fn stop(&self, levels: &[AdaptiveLevel], seconds: f64) -> Option<Stop> {
+        let last = levels.last()?;
+        if last.relative_bound.is_some_and(|relative| relative <= self.tolerance) {
+            return Some(Stop::Reached);
+        }
+        let growth = match levels {
+            [.., before, last] => last.vertices as f64 / before.vertices as f64,
+            _ => GROWTH,
+        };
+        let vertices = growth * last.vertices as f64;
+        let seconds = growth * seconds + WRITING + WRITING_PER_VERTEX * vertices;
+        if vertices > self.vertices {
+            Some(Stop::Vertices)
+        } else if !self.memory.suffices(self.backend, MORE_MEMORY * vertices) {
+            Some(Stop::Memory)
+        } else if !self.clock.allows(seconds) {
+            Some(Stop::Time)
+        } else {
+            None
+        }
+    }
+}
+
+fn stage(levels: &[AdaptiveLevel]) -> String {
+    match levels.last() {
+        None => "level 0".into(),
+        Some(last) => {
+            let vertices = grouped(last.vertices);
+            format!("level {}, after {} on {vertices} vertices", levels.len(), percent(last.relative_bound))
+        }
+    }
+}
+
+fn percent(relative: Option<f64>) -> String {
+    relative.map_or_else(|| "-".into(), |relative| format!("{:.2} %", 100.0 * relative))
+}
+
+/// The solution on the last mesh as `membranes solve` writes it, that mesh and the errors as pictures, if there is time. What
+/// was left out is returned.
+fn write_results(
+    folder: &Folder,
+    setup: &Setup,
+    study: &AdaptiveStudy,
+    levels: &[AdaptiveLevel],
+    clock: &Clock,
+) -> Result<Vec<&'static str>, Failure> {
+    let case = &setup.case;
+    let (Some((solution, bound)), Some(d), Some(last)) =
+        (study.solution(), study.discretization(), levels.last())
+    else {
+        return Ok(Vec::new());
+    };
+    let mesh = study.mesh();
+    let mut results = folder.results(Part::Solution);
+    let mut left_out = write_solution(&mut results, &case.title, d, solution, bound, clock)?;
+    left_out.extend(write_picture(&mut results, MESH, mesh_picture(&case.title, mesh, solution, clock))?);
+    left_out.extend(write_picture(&mut results, HISTORY, history(&case.title, levels, clock))?);
+    let seconds = Seconds { bound: last.bound_seconds, ..Seconds::default() };
+    let mut summary = Summary::new(&case.title, d, last.tolerance, Ok(solution), seconds, Some(bound))
+        .with_unused_groups(&setup.groups);
+    summary.left_out.clone_from(&left_out);
+    results.write(SUMMARY, |out| summary.write(out))?;
+    results.publish()?;
+    Ok(left_out)
+}
+
+/// The last mesh with its contact set.
+fn mesh_picture(
+    title: &str,
+    mesh: &Arc<Mesh>,
+    solution: &ContactSolution,
+    clock: &Clock,
+) -> Option<Result<Drawing, String>> {
+    let (title, mesh, contact) = (title.to_owned(), Arc::clone(mesh), solution.contact().to_vec());
+    clock.in_time(move || {
+        let sub = SubTriangulation::new(&mesh).map_err(|error| error.to_string())?;
+        let dual = DualMesh::new(&mesh, &sub);
+        let picture = MeshPicture { title: &title, mesh: &mesh, dual: &dual, contact: Some(&contact) };
+        render_triangulation(&picture).map_err(|error| error.to_string())
+    })
+}
+
+/// The bound, the error and the estimator of all levels.
+fn history(title: &str, levels: &[AdaptiveLevel], clock: &Clock) -> Option<Result<Drawing, String>> {
+    let (title, levels) = (title.to_owned(), levels.to_vec());
+    clock.in_time(move || {
+        let picture = render_rates(&RatesPicture {
+            title: &title,
+            abscissa: "vertices",
+            h: &levels.iter().map(|level| level.vertices as f64).collect::<Vec<_>>(),
+            series: &[
+                Series { name: "guaranteed bound", values: &values(&levels, |level| Some(level.bound)) },
+                Series { name: "true error", values: &values(&levels, |level| level.energy_error) },
+                Series {
+                    name: "residual estimator",
+                    values: &values(&levels, |l| Some(l.residual_estimator)),
+                },
+            ],
+            slopes: &OPTIMAL,
+        });
+        picture.map_err(|error| error.to_string())
+    })
+}
+
+/// What is not known cannot be drawn.
+fn values(levels: &[AdaptiveLevel], of: impl Fn(&AdaptiveLevel) -> Option<f64>) -> Vec<f64> {
+    levels.iter().map(|level| of(level).unwrap_or(f64::NAN)).collect()
+}
+
+/// The history for the eye.
+fn table(
+    title: &str,
+    levels: &[AdaptiveLevel],
+    warnings: &[LoadWarning],
+    folder: &Path,
+    left_out: &[&str],
+) -> String {
+    let mut text =
+        format!("{title}\n  vertices    h min     bound  relative  effectivity  iterations  seconds\n");
+    for level in levels {
+        let effectivity = level.effectivity().map_or_else(|| "-".into(), |index| format!("{index:.2}"));
+        text += &format!(
+            "{:>10} {:>8.1e} {:>9.2e} {:>9} {effectivity:>12} {:>11} {:>8.2}\n",
+            grouped(level.vertices),
+            level.h_min,
+            level.bound,
+            percent(level.relative_bound),
+            level.iterations,
+            level.solve_seconds + level.bound_seconds,
+        );
+    }
+    // The first meshes may be too coarse to see anything of the solution.
+    let later = &levels[levels.len() / 2..];
+    if let Some(slope) = exponent(later.iter().map(|level| [level.vertices as f64, level.bound])) {
+        text += &format!("  the bound falls like vertices^{slope:.2} (later half; -0.50 is the best)\n");
+    }
+    warnings.iter().for_each(|warning| text += &format!("  warning: {warning}\n"));
+    if !left_out.is_empty() {
+        text += &format!("  left out: {}\n", left_out_line(left_out));
+    }
+    let mut files = vec![SOLUTION, SUMMARY, MEMBRANES, LEVELS, HISTORY, MESH];
+    files.retain(|name| !left_out.contains(name));
+    let files = files.join(", ");
+    text + &format!("  files: {}/{{{files}}}\n", folder.display())
+}
+
+fn verdict(
+    name: &str,
+    arguments: &AdaptArguments,
+    stop: &Stop,
+    levels: &[AdaptiveLevel],
+) -> Result<(), Failure> {
+    let why = match stop {
+        Stop::Reached => return Ok(()),
+        Stop::Vertices => {
+            format!(
+                "the next mesh would have more than {} vertices (--max-vertices)",
+                grouped(arguments.max_vertices)
+            )
+        }
+        Stop::Time => TIME.into(),
+        Stop::Memory => MEMORY.into(),
+        Stop::TooSmall(error) => error.to_string(),
+    };
+    let relative = percent(levels.last().and_then(|level| level.relative_bound));
+    let goal = percent(Some(arguments.tolerance));
+    Err(Failure::NotCertified(format!(
+        "{name}: stopped at a guaranteed relative error of {relative}, above {goal}: {why}; {GOES_ON}"
+    )))
+}

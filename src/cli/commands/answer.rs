@@ -1,0 +1,130 @@
+//! An answer to the exported program, from any other solver, before our certificate.
+
+use std::io::{self, BufReader};
+use std::path::Path;
+
+use crate::action::{ContactSolution, Rejected, Residuals, certify};
+use crate::cli::args::CheckArguments;
+use crate::cli::failure::Failure;
+use crate::cli::run::files::{Part, SUMMARY};
+use crate::cli::run::folder::{Claim, Folder};
+use crate::cli::run::input::{self, Input};
+use crate::cli::run::setup::Setup;
+use crate::cli::run::watch::Watch;
+use crate::discretization::Discretization;
+use crate::output::{Seconds, Summary};
+use crate::qp::{
+    Answer, BackendError, QpBackend, QpOptions, QpProblem, QpSolution, Status, contact_qp, read_answer,
+};
+use crate::solver::{Candidate, ContactSolver, QpSolver, SolverOptions, Statistics};
+
+/// What stands for the backend, whose name nobody has told us.
+pub(super) const NAME: &str = "answer";
+
+/// An answer from elsewhere, certified or not.
+pub(super) struct Verdict {
+    pub(super) result: Result<ContactSolution, Box<Rejected>>,
+    /// What would help one that is not.
+    pub(super) remedy: &'static str,
+}
+
+/// Reads an answer and has it certified; the verdict goes also into a folder, if one is named.
+pub(super) fn judge(
+    setup: &Setup,
+    d: &Discretization,
+    file: &Path,
+    arguments: &CheckArguments,
+    seconds: Seconds,
+    watch: &Watch,
+) -> Result<Verdict, Failure> {
+    let refused = |error: &dyn std::fmt::Display| Failure::Input(format!("{}: {error}", file.display()));
+    let opened = input::open(file, Input::Arrays, setup.memory).map_err(|error| match error.kind() {
+        io::ErrorKind::OutOfMemory => refused(&error),
+        _ => refused(&format!("{error}; name a readable file, written by numpy.savez")),
+    })?;
+    let n = d.interior().len();
+    let answer = read_answer(BufReader::new(opened), 2 * n, n).map_err(|error| refused(&error))?;
+    let tolerance = setup.case.solver.tolerance.or_default();
+    let result = certify(d, Candidate::from_answer(d, answer.clone(), statistics()), tolerance);
+    let remedy = if result.is_ok() { "" } else { remedy(d, &answer, tolerance) };
+    if let Some(folder) = &arguments.out {
+        let claim = Claim {
+            case: &setup.id,
+            part: Part::Solution,
+            settings: NAME.into(),
+            overwrite: arguments.overwrite,
+            says: "it is as it was",
+        };
+        let folder = Folder::claim(folder, &claim, watch)?;
+        let verdict = result.as_ref().map_err(|rejected| rejected.as_ref());
+        let summary = Summary::new(&setup.case.title, d, tolerance, verdict, seconds, None)
+            .with_unused_groups(&setup.groups);
+        let mut results = folder.results(Part::Solution);
+        results.write(SUMMARY, |out| summary.write(out))?;
+        results.publish()?;
+    }
+    Ok(Verdict { result, remedy })
+}
+
+fn statistics() -> Statistics {
+    Statistics { status: Status::Unknown, ..Statistics::of(NAME) }
+}
+
+/// What would make an answer certify: the multipliers with the other sign, the polish, both; else accuracy.
+fn remedy(d: &Discretization, answer: &Answer, tolerance: f64) -> &'static str {
+    let negative = Answer { y: answer.y.iter().map(|y| -y).collect(), ..answer.clone() };
+    // Of one that certifies: zero.
+    let residual = |answer: &Answer| {
+        let candidate = Candidate::from_answer(d, answer.clone(), statistics());
+        match certify(d, candidate, tolerance) {
+            Ok(_) => 0.0,
+            Err(rejected) => rejected.residuals.as_ref().map_or(f64::INFINITY, Residuals::beyond_rounding),
+        }
+    };
+    let polished = |answer: &Answer| {
+        let options = SolverOptions { tolerance, ..SolverOptions::default() };
+        let candidate = QpSolver::new(Given::new(d, answer)).solve(d, &options);
+        // One that finds another contact set has solved the problem anew.
+        let is_repaired =
+            |candidate: &Candidate| candidate.statistics.polish.is_none_or(|report| report.repairs > 0);
+        candidate.is_ok_and(|candidate| !is_repaired(&candidate) && certify(d, candidate, tolerance).is_ok())
+    };
+    if residual(&negative) == 0.0 {
+        "; with -y in place of y it certifies: its multipliers have the other sign"
+    } else if residual(answer) <= residual(&negative) && polished(answer) {
+        "; its contact set is right, and polished it certifies: have it solved more accurately"
+    } else if polished(&negative) {
+        "; with -y in place of y, and polished, it certifies: change the sign, and have it solved more accurately"
+    } else {
+        "; have it solved more accurately, or allow more with --tolerance"
+    }
+}
+
+/// A backend that knows its answer, in the units in which it is asked.
+struct Given(Answer);
+
+impl Given {
+    fn new(d: &Discretization, answer: &Answer) -> Self {
+        let qp = contact_qp(d);
+        let scaled = |values: &[f64], scale: f64| values.iter().map(|value| value / scale).collect();
+        Self(Answer { x: scaled(&answer.x, qp.primal_scale()), y: scaled(&answer.y, qp.dual_scale()) })
+    }
+}
+
+impl QpBackend for Given {
+    fn name(&self) -> &str {
+        NAME
+    }
+
+    fn solve(&mut self, _: &QpProblem, _: &QpOptions) -> Result<QpSolution, BackendError> {
+        let Answer { x, y } = self.0.clone();
+        Ok(QpSolution {
+            x,
+            y,
+            status: Status::Unknown,
+            iterations: 0,
+            setup_seconds: 0.0,
+            solve_seconds: 0.0,
+        })
+    }
+}

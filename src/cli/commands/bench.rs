@@ -1,0 +1,193 @@
+//! `membranes bench`: the solvers side by side.
+
+mod files;
+mod table;
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use crate::cli::args::{BenchArguments, CaseArguments};
+use crate::cli::case::{BackendName, CaseId};
+use crate::cli::failure::Failure;
+use crate::cli::run::files::{Part, ROWS};
+use crate::cli::run::folder::{Claim, Folder};
+use crate::cli::run::memory::Memory;
+use crate::cli::run::progress::Progress;
+use crate::cli::run::setup::{Setup, check_refinements, solver};
+use crate::cli::run::watch::Watch;
+use crate::cli::terminal::{grouped, print};
+use crate::discretization::Discretization;
+use crate::mesh::{MAX_VERTICES, Mesh};
+use crate::problem::ContactProblem;
+use crate::solver::SolverOptions;
+use crate::study::comparison::{Comparison, Place, Row, SQUARE, square_mesh, square_problem};
+use files::{read_rows, write_results, write_rows};
+
+/// Where results go without a case file and without `--out`.
+const FAMILY: &str = "bench";
+
+pub(crate) fn run(arguments: &BenchArguments, watch: &Watch) -> Result<(), Failure> {
+    let progress = Progress::new(arguments.quiet);
+    let mut bench = Bench::new(arguments, &progress, watch)?;
+    let folder = match &arguments.case {
+        _ if arguments.no_run => bench.run_nothing()?,
+        None => bench.run_family(&arguments.sizes)?,
+        Some(path) => bench.run_case(path.clone(), arguments)?,
+    };
+    let Bench { title, rows, measured, .. } = bench;
+    write_results(&folder, &title, &rows)?;
+    drop(progress);
+    if !arguments.quiet {
+        print(&table::table(&title, &rows, folder.path()))?;
+    }
+    if arguments.no_run || rows[..measured].iter().any(|row| row.certified) {
+        return Ok(());
+    }
+    let remedy = "allow more time by --time-limit, or choose others by --solvers";
+    Err(Failure::NotCertified(format!("{title}: no solver has a certified solution ({ROWS}); {remedy}")))
+}
+
+/// A comparison under way.
+struct Bench<'a> {
+    title: String,
+    solvers: Vec<BackendName>,
+    options: SolverOptions,
+    arguments: &'a BenchArguments,
+    /// Those measured so far, before those of other files.
+    rows: Vec<Row>,
+    measured: usize,
+    progress: &'a Progress,
+    watch: &'a Watch,
+}
+
+impl<'a> Bench<'a> {
+    /// Reads the rows of other files and makes the folder: what can fail does so before anything is measured.
+    fn new(arguments: &'a BenchArguments, progress: &'a Progress, watch: &'a Watch) -> Result<Self, Failure> {
+        let mut rows = Vec::new();
+        for path in &arguments.merge {
+            rows.extend(read_rows(path, Memory::new(None))?);
+        }
+        let built = || BackendName::ALL.into_iter().filter(|backend| backend.is_built()).collect();
+        let mut solvers = Vec::new();
+        for &backend in &arguments.solvers {
+            if !solvers.contains(&backend) {
+                solvers.push(backend);
+            }
+        }
+        let mut options =
+            SolverOptions { time_limit: Some(arguments.time_limit), ..SolverOptions::default() };
+        if let Some(tolerance) = arguments.tolerance {
+            options.tolerance = tolerance;
+        }
+        Ok(Self {
+            title: "two membranes over the unit square".into(),
+            solvers: if solvers.is_empty() { built() } else { solvers },
+            options,
+            arguments,
+            rows,
+            measured: 0,
+            progress,
+            watch,
+        })
+    }
+
+    /// The folder: rows measured in another way stay.
+    fn claim(&self, case: &CaseId, meshes: &str) -> Result<Folder, Failure> {
+        let names: Vec<&str> = self.solvers.iter().map(|solver| solver.as_str()).collect();
+        let seconds = self.arguments.time_limit.seconds();
+        let tolerance = self.options.tolerance;
+        let measured = if self.arguments.no_run { "nothing" } else { meshes };
+        let settings = format!("{measured}; {}; {seconds} s; tolerance {tolerance:e}", names.join(", "));
+        let claim = Claim {
+            case,
+            part: Part::Bench,
+            settings,
+            overwrite: self.arguments.output.overwrite,
+            says: "what was measured so far is in bench.csv",
+        };
+        let path = self.arguments.output.folder(self.arguments.case.as_deref().unwrap_or(FAMILY.as_ref()));
+        Folder::claim(&path, &claim, self.watch)
+    }
+
+    fn comparison(&self) -> Comparison {
+        let contestant = |&name: &BackendName| (name.as_str().into(), solver(name));
+        Comparison::new(self.solvers.iter().map(contestant).collect(), self.options.clone())
+    }
+
+    fn run_nothing(&self) -> Result<Folder, Failure> {
+        let folder = self.claim(&CaseId::built_in(FAMILY), "")?;
+        write_rows(&folder, &self.rows)?;
+        Ok(folder)
+    }
+
+    /// The built-in family on meshes of these numbers of cells along a side, from the coarsest.
+    fn run_family(&mut self, sizes: &[usize]) -> Result<Folder, Failure> {
+        let bad_input = |error: &dyn std::fmt::Display| Failure::Input(format!("--sizes: {error}"));
+        let mut sizes = sizes.to_vec();
+        sizes.sort_unstable();
+        sizes.dedup();
+        if let Some(n) = sizes.iter().find(|&&n| !((n as f64 + 1.0).powi(2) <= MAX_VERTICES)) {
+            let message = format!("{n} x {n} cells have more than {MAX_VERTICES:.0e} vertices: choose fewer");
+            return Err(bad_input(&message));
+        }
+        let problem = square_problem().map_err(|error| bad_input(&error))?;
+        let folder = self.claim(&CaseId::built_in(FAMILY), &format!("cells {sizes:?}"))?;
+        self.progress.steps(sizes.len() * self.solvers.len());
+        let mut comparison = self.comparison();
+        for n in sizes {
+            let mesh = Arc::new(square_mesh(n).map_err(|error| bad_input(&error))?);
+            self.measure(&mut comparison, &folder, SQUARE, n, &problem, &mesh)?;
+        }
+        Ok(folder)
+    }
+
+    /// A case on its mesh and its refinements.
+    fn run_case(&mut self, path: PathBuf, bench: &BenchArguments) -> Result<Folder, Failure> {
+        let levels = bench.levels;
+        let arguments = CaseArguments { path, refine: 0, memory_limit: None, quiet: false };
+        let Setup { name, id, case, mut family, .. } = Setup::new(&arguments, self.progress)?;
+        check_refinements(&name, family.mesh().points().len() as f64, levels - 1)?;
+        self.title.clone_from(&case.title);
+        self.options.tolerance = bench.tolerance.unwrap_or(case.solver.tolerance.or_default());
+        let stem = arguments.path.file_stem().unwrap_or(arguments.path.as_os_str());
+        let stem = stem.to_string_lossy();
+        let folder = self.claim(&id, &format!("{levels} levels"))?;
+        self.progress.steps(levels * self.solvers.len());
+        let mut comparison = self.comparison();
+        for level in 0..levels {
+            if level > 0 {
+                family.refine().map_err(|error| Failure::Input(format!("{name}: [mesh]: {error}")))?;
+            }
+            self.measure(&mut comparison, &folder, &stem, level, &case.problem, family.mesh())?;
+        }
+        Ok(folder)
+    }
+
+    /// Runs all solvers on one mesh. After each, all rows are in the file: a long run may be stopped.
+    fn measure(
+        &mut self,
+        comparison: &mut Comparison,
+        folder: &Folder,
+        name: &str,
+        n: usize,
+        problem: &ContactProblem,
+        mesh: &Arc<Mesh>,
+    ) -> Result<(), Failure> {
+        let vertices = grouped(mesh.points().len());
+        self.progress.stage(format!("assembling on {vertices} vertices"));
+        let d = Discretization::new(problem, mesh.clone())
+            .map_err(|error| Failure::Input(format!("{name}: {error}")))?;
+        let place = Place { problem: name, n, discretization: &d };
+        for index in 0..self.solvers.len() {
+            self.progress.stage(format!("{} on {vertices} vertices", self.solvers[index].as_str()));
+            let row = comparison.row(index, &place);
+            // A new measurement takes the place of an old one.
+            self.rows.retain(|old| !old.repeats(&row));
+            self.rows.insert(self.measured, row);
+            self.measured += 1;
+            write_rows(folder, &self.rows)?;
+            self.progress.step();
+        }
+        Ok(())
+    }
+}

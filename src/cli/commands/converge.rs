@@ -1,0 +1,218 @@
+//! `membranes converge`.
+
+use std::path::Path;
+
+use super::solution::left_out_line;
+use crate::cli::args::ConvergeArguments;
+use crate::cli::case::BackendName;
+use crate::cli::failure::Failure;
+use crate::cli::run::clock::Clock;
+use crate::cli::run::files::{ERRORS, ERRORS_TABLE, Part, RATES};
+use crate::cli::run::folder::{Claim, Folder};
+use crate::cli::run::levels::{GOES_ON, KEPT, Levels, MEMORY, TIME, failure, settings, too_late};
+use crate::cli::run::memory::Memory;
+use crate::cli::run::progress::Progress;
+use crate::cli::run::setup::{Setup, check_refinements, options, solver, too_early, unused_groups};
+use crate::cli::run::watch::Watch;
+use crate::cli::terminal::{grouped, print};
+use crate::pictures::{Format, RatesPicture, Series, render_rates};
+use crate::qp::TimeLimit;
+use crate::study::{ConvergenceStudy, LevelErrors, MEASURES, fitted_rate, markdown, rate};
+
+/// The slopes to compare with: those of the theory, and that of a discontinuous action in L2.
+const SLOPES: [f64; 4] = [0.5, 1.0, 1.5, 2.0];
+
+/// Each refinement makes four times as many triangles, and the built-in solvers need time in proportion.
+const GROWTH: f64 = 4.0;
+
+pub(crate) fn run(arguments: &ConvergeArguments, watch: &Watch) -> Result<(), Failure> {
+    let clock = Clock::new(arguments.time_limit);
+    clock.watch(watch, too_early(&arguments.case.path));
+    let progress = Progress::new(arguments.case.quiet);
+    let mut setup = Setup::new(&arguments.case, &progress)?;
+    let Some(exact) = setup.case.exact.take() else {
+        let remedy =
+            "give `case = \"...\"` in place of [membranes] and [domain]; `membranes cases` lists them";
+        return Err(Failure::Input(format!("{}: errors need a known solution: {remedy}", setup.name)));
+    };
+    if let Some(backend) = arguments.backend {
+        setup.case.solver.backend = backend;
+    }
+    let backend = setup.case.solver.backend;
+    setup.check_memory(backend)?;
+    check_refinements(&setup.name, setup.family.mesh().points().len() as f64, arguments.levels - 1)?;
+    let claim = Claim {
+        case: &setup.id,
+        part: Part::Converge,
+        settings: settings(&setup),
+        overwrite: arguments.output.overwrite,
+        says: KEPT,
+    };
+    let folder = Folder::claim(&arguments.output.folder(&arguments.case.path), &claim, watch)?;
+    let kept = Levels { folder: &folder, table: ERRORS, picture: RATES };
+    let mut levels: Vec<LevelErrors> = kept.so_far();
+    levels.truncate(arguments.levels);
+
+    let (title, settings) = (setup.case.title, &setup.case.solver);
+    let solver = solver(backend);
+    let mut study = ConvergenceStudy::new(exact, setup.family, solver, options(settings), settings.tolerance)
+        .map_err(|error| failure(&setup.name, &error, &setup.node_tags))?;
+    let name = setup.name.clone();
+    clock.watch(watch, move || too_late(&name));
+    let limits = Limits {
+        levels: arguments.levels,
+        clock,
+        memory: setup.memory,
+        backend,
+        time_limit: settings.time_limit,
+    };
+    let stop = add_levels(&setup.name, &mut study, &mut levels, &limits, &kept, &progress)?;
+    watch.lift();
+    let drawn = write_picture(&folder, &title, &levels, &clock)?;
+    drop(progress);
+    if !arguments.case.quiet {
+        print(&(table(&title, &levels, folder.path(), drawn) + &unused_groups(&setup.groups)))?;
+    }
+    stop.map_or(Ok(()), |why| {
+        let (done, of) = (levels.len(), arguments.levels);
+        Err(Failure::NotCertified(format!(
+            "{}: stopped after {done} of {of} levels: {why}; {GOES_ON}",
+            setup.name
+        )))
+    })
+}
+
+/// What the run may take.
+struct Limits {
+    levels: usize,
+    clock: Clock,
+    memory: Memory,
+    backend: BackendName,
+    /// Seconds of each solve.
+    time_limit: Option<TimeLimit>,
+}
+
+impl Limits {
+    /// Why not to begin the level after `last`, judging from that one.
+    fn stop(&self, last: &LevelErrors) -> Option<&'static str> {
+        if !self.clock.allows(GROWTH * (last.solve_seconds + last.norm_seconds)) {
+            Some(TIME)
+        } else if !self.memory.suffices(self.backend, GROWTH * last.vertices as f64) {
+            Some(MEMORY)
+        } else {
+            None
+        }
+    }
+}
+
+/// Adds levels to the known ones until there are as many as asked for, or says why there are fewer.
+fn add_levels(
+    name: &str,
+    study: &mut ConvergenceStudy,
+    levels: &mut Vec<LevelErrors>,
+    limits: &Limits,
+    kept: &Levels,
+    progress: &Progress,
+) -> Result<Option<&'static str>, Failure> {
+    let known = levels.len();
+    if known == limits.levels {
+        return Ok(None);
+    }
+    progress.steps(limits.levels);
+    for level in 0..limits.levels {
+        progress.stage(format!("level {} of {}", level + 1, limits.levels));
+        if let Some(why) = level.checked_sub(1).and_then(|last| limits.stop(&levels[last])) {
+            return Ok(Some(why));
+        }
+        study.set_time_limit(limits.clock.of_solver(limits.time_limit));
+        let solved = if level < known {
+            study.skip_level()
+        } else {
+            study.next_level().map(|errors| levels.push(errors))
+        };
+        match solved {
+            Err(error) if limits.clock.has_stopped(&error) => return Ok(Some(TIME)),
+            solved => solved.map_err(|error| failure(name, &error, &[]))?,
+        }
+        if level >= known {
+            kept.write(levels)?;
+            kept.folder.write(ERRORS_TABLE, |out| out.write_all(markdown(levels).as_bytes()))?;
+        }
+        progress.step();
+    }
+    Ok(None)
+}
+
+/// The errors against the mesh size, if there is time; says whether there was.
+fn write_picture(
+    folder: &Folder,
+    title: &str,
+    levels: &[LevelErrors],
+    clock: &Clock,
+) -> Result<bool, Failure> {
+    let h: Vec<f64> = levels.iter().map(|level| level.h).collect();
+    let values: Vec<Vec<f64>> =
+        MEASURES.iter().map(|measure| levels.iter().map(measure.of).collect()).collect();
+    let title = title.to_owned();
+    let picture = clock.in_time(move || {
+        let series: Vec<Series> = MEASURES
+            .iter()
+            .zip(&values)
+            .map(|(measure, values)| Series { name: measure.name, values })
+            .collect();
+        render_rates(&RatesPicture { title: &title, abscissa: "h", h: &h, series: &series, slopes: &SLOPES })
+    });
+    let Some(png) = picture else { return Ok(false) };
+    let failed = |error: &dyn std::fmt::Display| Failure::Input(format!("{RATES}: {error}"));
+    let png = png.map_err(|error| failed(&error))?.encode(Format::Png).map_err(|error| failed(&error))?;
+    folder.write(RATES, |out| out.write_all(&png))?;
+    Ok(true)
+}
+
+/// The errors with their rates, for the eye.
+fn table(title: &str, levels: &[LevelErrors], folder: &Path, drawn: bool) -> String {
+    let mut text = format!("{title}\n  vertices");
+    for measure in MEASURES {
+        text += &format!(" {:>8}", shortened(measure.name));
+    }
+    text += "    index\n";
+    for (k, level) in levels.iter().enumerate() {
+        text += &format!("{:>10}", grouped(level.vertices));
+        for measure in MEASURES {
+            text += &format!(" {:>8.2e}", (measure.of)(level));
+        }
+        text += &format!(" {:>8.2}\n", level.effectivity());
+        if k > 0 {
+            text += &format!("{:>10}", "rate");
+            for measure in MEASURES {
+                text += &format!(" {:>8}", rate_text(rate(measure, &levels[k - 1], level)));
+            }
+            text.push('\n');
+        }
+    }
+    if levels.len() > 2 {
+        text += &format!("{:>10}", "all levels");
+        for measure in MEASURES {
+            text += &format!(" {:>8}", rate_text(fitted_rate(measure, levels)));
+        }
+        text.push('\n');
+    }
+    text += "  index: the guaranteed bound over the true error in the energy norm\n";
+    let mut files = format!("{ERRORS}, {ERRORS_TABLE}");
+    if drawn {
+        files += &format!(", {RATES}");
+    } else {
+        text += &format!("  left out: {}\n", left_out_line(&[RATES]));
+    }
+    text + &format!("  files: {}/{{{files}}}\n", folder.display())
+}
+
+fn rate_text(rate: Option<f64>) -> String {
+    rate.map_or_else(|| "-".into(), |rate| format!("{rate:.2}"))
+}
+
+/// A heading that fits into a column.
+fn shortened(name: &str) -> String {
+    let name = name.replace("lambda in ", "lam ").replace("H^-1", "H-1").replace("u at nodes", "nodes");
+    name.replace("contact area", "area")
+}

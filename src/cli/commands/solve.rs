@@ -1,0 +1,319 @@
+//! `membranes solve`.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::solution::{A_SOLUTION, left_out_line, write_picture, write_solution};
+use crate::action::{ContactSolution, Rejected};
+use crate::cli::args::SolveArguments;
+use crate::cli::case::CaseFile;
+use crate::cli::failure::Failure;
+use crate::cli::run::clock::Clock;
+use crate::cli::run::files::{DUAL, FLUX, MEMBRANES, MESH, Part, SOLUTION, SUMMARY};
+use crate::cli::run::folder::{Claim, Folder, Results};
+use crate::cli::run::progress::Progress;
+use crate::cli::run::setup::{Setup, options, solver, too_early, unused_groups};
+use crate::cli::run::watch::Watch;
+use crate::cli::terminal::{fields, fixed, grouped, print};
+use crate::discretization::Discretization;
+use crate::fem::element_loads;
+use crate::flux::{Reconstruction, Reconstructor};
+use crate::mesh::{DualMesh, SubTriangulation};
+use crate::output::{Seconds, Summary, write_dual_vtu, write_flux_vtu};
+use crate::pictures::{MeshPicture, render_mesh};
+use crate::qp::{Status, TimeLimit};
+use crate::solver::{PolishReport, Statistics};
+use crate::study::{AccuracyError, Bounded, solve_bounded};
+
+/// What an interrupted run has to say.
+const UNTOUCHED: &str = "it is as it was";
+
+pub(crate) fn run(arguments: &SolveArguments, watch: &Watch) -> Result<(), Failure> {
+    let clock = Clock::new(arguments.time_limit);
+    clock.watch(watch, too_early(&arguments.case.path));
+    let progress = Progress::new(arguments.case.quiet);
+    let mut setup = Setup::new(&arguments.case, &progress)?;
+    override_settings(&mut setup, arguments, &clock);
+    setup.check_memory(setup.case.solver.backend)?;
+    let (d, seconds) = setup.discretize(&progress)?;
+    let claim = Claim {
+        case: &setup.id,
+        part: Part::Solution,
+        settings: A_SOLUTION.into(),
+        overwrite: arguments.output.overwrite,
+        says: UNTOUCHED,
+    };
+    let folder = Folder::claim(&arguments.output.folder(&arguments.case.path), &claim, watch)?;
+
+    let result = solve(&setup, &d, seconds, &clock, (&folder, watch), &progress);
+    watch.lift();
+    match result {
+        Ok(bounded) => {
+            progress.stage("writing the results");
+            let summary = write_results(&setup, &d, &bounded, seconds, (&folder, &clock), arguments.dual)?;
+            drop(progress);
+            if !arguments.case.quiet {
+                let unloaded = d.load().iter().flatten().all(|&load| load == 0.0);
+                let polish = bounded.solution.statistics().polish;
+                let table = table(&summary, polish, unloaded, folder.path(), arguments.dual);
+                print(&(table + &unused_groups(&setup.groups)))?;
+            }
+            Ok(())
+        }
+        Err(AccuracyError::Rejected(rejected, tolerance)) => {
+            let summary = Summary::new(&setup.case.title, &d, tolerance, Err(&rejected), seconds, None)
+                .with_unused_groups(&setup.groups);
+            Err(reject(&setup.name, &folder, &summary, &rejected))
+        }
+        Err(error) => Err(Failure::NotCertified(format!("{}: {error}", setup.name))),
+    }
+}
+
+/// Solves, and bounds the error, in the time that there is.
+fn solve(
+    setup: &Setup,
+    d: &Discretization,
+    seconds: Seconds,
+    clock: &Clock,
+    (folder, watch): (&Folder, &Watch),
+    progress: &Progress,
+) -> Result<Bounded, AccuracyError> {
+    let settings = &setup.case.solver;
+    let unknowns = grouped(2 * d.interior().len());
+    progress.stage(format!("{} solves for {unknowns} unknowns", settings.backend.as_str()));
+    let give_up = Arc::new(too_late(setup, d, folder, seconds));
+    let of_run = Arc::clone(&give_up);
+    clock.watch(watch, move || of_run());
+    let mut solver = watch.over(solver(settings.backend), move || give_up());
+    let domain = setup.case.domain();
+    solve_bounded(&setup.case.problem, domain, d, &mut *solver, &options(settings), settings.tolerance)
+}
+
+/// Writes what is certified: the solution in any case, the rest if there is time.
+fn write_results(
+    setup: &Setup,
+    d: &Discretization,
+    bounded: &Bounded,
+    seconds: Seconds,
+    (folder, clock): (&Folder, &Clock),
+    dual: bool,
+) -> Result<Summary, Failure> {
+    let start = Instant::now();
+    let title = &setup.case.title;
+    let Bounded { solution, bound, tolerance, bound_seconds } = bounded;
+    let mut results = folder.results(Part::Solution);
+    let mut left_out = Vec::new();
+    if dual {
+        left_out.extend(write_dual(&mut results, &setup.case, d, solution, clock)?);
+    }
+    left_out.extend(write_solution(&mut results, title, d, solution, bound, clock)?);
+    let output = start.elapsed().as_secs_f64();
+    let seconds = Seconds { bound: *bound_seconds, output, ..seconds };
+    let mut summary = Summary::new(title, d, *tolerance, Ok(solution), seconds, Some(bound))
+        .with_unused_groups(&setup.groups);
+    summary.left_out = left_out;
+    results.write(SUMMARY, |out| summary.write(out))?;
+    results.publish()?;
+    Ok(summary)
+}
+
+/// What to do when the solver, or the bound after it, does not come back in time.
+fn too_late(
+    setup: &Setup,
+    d: &Discretization,
+    folder: &Folder,
+    seconds: Seconds,
+) -> impl Fn() -> Failure + Send + Sync + 'static {
+    let settings = &setup.case.solver;
+    let statistics = Statistics {
+        status: Status::TimeLimit,
+        solve_seconds: settings.time_limit.map_or(0.0, TimeLimit::seconds),
+        ..Statistics::of(settings.backend.as_str())
+    };
+    let rejected = Rejected::without_result(statistics);
+    let tolerance = settings.tolerance.or_default();
+    let summary = Summary::new(&setup.case.title, d, tolerance, Err(&rejected), seconds, None)
+        .with_unused_groups(&setup.groups);
+    let (name, folder) = (setup.name.clone(), folder.clone());
+    move || reject(&name, &folder, &summary, &rejected)
+}
+
+/// Writes the summary of a run without a solution, and says why there is none. What an earlier run left is not the solution of
+/// this one, and goes.
+fn reject(name: &str, folder: &Folder, summary: &Summary, rejected: &Rejected) -> Failure {
+    let mut results = folder.results(Part::Solution);
+    let written = results.write(SUMMARY, |out| summary.write(out)).and_then(|()| results.publish());
+    if let Err(failure) = written {
+        return failure;
+    }
+    let (status, remedy) = (rejected.statistics.status.as_str(), rejected.remedy());
+    Failure::NotCertified(format!("{name}: {rejected} (status {status}); {remedy}"))
+}
+
+/// Arguments come before the case file.
+fn override_settings(setup: &mut Setup, arguments: &SolveArguments, clock: &Clock) {
+    let settings = &mut setup.case.solver;
+    if let Some(backend) = arguments.backend {
+        settings.backend = backend;
+    }
+    if let Some(tolerance) = arguments.tolerance {
+        settings.tolerance = tolerance;
+    }
+    settings.time_limit = clock.of_solver(settings.time_limit);
+    settings.polish &= !arguments.no_polish;
+}
+
+/// The dual mesh `D_h`, with the action as the piecewise constant that it is, and as Figure 1 of the paper; the fluxes
+/// on `S_h`. What there is no time for is returned.
+fn write_dual(
+    results: &mut Results,
+    case: &CaseFile,
+    d: &Discretization,
+    solution: &ContactSolution,
+    clock: &Clock,
+) -> Result<Vec<&'static str>, Failure> {
+    let bad_input = |name: &str, error: &dyn std::fmt::Display| Failure::Input(format!("{name}: {error}"));
+    let mesh = d.mesh();
+    if !clock.allows(0.0) {
+        return Ok(vec![DUAL, FLUX, MESH]);
+    }
+    let sub = SubTriangulation::new(mesh).map_err(|error| bad_input(DUAL, &error))?;
+    let dual = DualMesh::new(mesh, &sub);
+    results.write(DUAL, |out| write_dual_vtu(&dual, solution, out))?;
+
+    if !clock.allows(0.0) {
+        return Ok(vec![FLUX, MESH]);
+    }
+    let [f1, f2] = case.problem.load();
+    let load = |f| element_loads(mesh, f).map_err(|error| bad_input(FLUX, &error));
+    let reconstructor = Reconstructor::new(d, &sub, [load(f1)?, load(f2)?]);
+    let fluxes = reconstructor.reconstruct(solution.displacement(), Reconstruction::Full);
+    results.write(FLUX, |out| write_flux_vtu(&sub, &fluxes, solution, out))?;
+
+    let (title, mesh, contact) = (case.title.clone(), Arc::clone(mesh), solution.contact().to_vec());
+    let picture = clock.in_time(move || {
+        let picture = MeshPicture { title: &title, mesh: &mesh, dual: &dual, contact: Some(&contact) };
+        render_mesh(&picture).map_err(|error| error.to_string())
+    });
+    write_picture(results, MESH, picture)
+}
+
+/// The summary for the eye.
+fn table(
+    summary: &Summary,
+    polish: Option<PolishReport>,
+    unloaded: bool,
+    folder: &Path,
+    dual: bool,
+) -> String {
+    let number = |value: Option<f64>| value.map_or_else(String::new, |value| fixed(value, 8));
+    let interior = summary.unknowns / 2;
+    let contact = summary.contact_vertices.unwrap_or(0);
+    let worst = summary.residuals.as_ref().map_or(f64::NAN, |r| {
+        [r.stationarity, r.primal, r.dual_sign, r.complementarity, r.action_mismatch, r.dual_mismatch]
+            .into_iter()
+            .fold(r.variational_inequality, f64::max)
+    });
+    let seconds = &summary.seconds;
+    let mut files = vec![SOLUTION, SUMMARY, MEMBRANES];
+    if dual {
+        files.extend([DUAL, FLUX, MESH]);
+    }
+    files.retain(|name| !summary.left_out.contains(name));
+    let files = files.join(", ");
+    let rows = [
+        (
+            "mesh",
+            format!(
+                "{} vertices, {} triangles, least angle {:.1} degrees",
+                grouped(summary.vertices),
+                grouped(summary.triangles),
+                summary.min_angle
+            ),
+        ),
+        ("solver", solver_line(summary)),
+        ("chosen", summary.choice.clone().unwrap_or_default()),
+        ("polish", polish.map_or_else(String::new, polish_line)),
+        (
+            "certified",
+            format!(
+                "largest residual {worst:.1e}{} (tolerance {:.0e})",
+                beyond(summary, worst),
+                summary.tolerance
+            ),
+        ),
+        ("error", error_line(summary, unloaded)),
+        ("guaranteed", guarantee(summary)),
+        ("warning", summary.warnings.join("; ")),
+        ("energy", number(summary.energy)),
+        (
+            "contact",
+            format!(
+                "{} of {} interior vertices, area {}",
+                grouped(contact),
+                grouped(interior),
+                fixed(summary.contact_area_extended.unwrap_or(0.0), 6)
+            ),
+        ),
+        ("total force", number(summary.total_force_extended)),
+        (
+            "seconds",
+            format!(
+                "mesh {:.2}, assembly {:.2}, solve {:.2}, bound {:.2}, output {:.2}",
+                seconds.mesh,
+                seconds.assembly,
+                seconds.setup + seconds.solve,
+                seconds.bound,
+                seconds.output
+            ),
+        ),
+        ("left out", left_out_line(&summary.left_out)),
+        ("files", format!("{}/{{{files}}}", folder.display())),
+    ];
+    let rows: Vec<_> = rows.into_iter().filter(|(_, value)| !value.is_empty()).collect();
+    format!("{}\n{}", summary.title, fields(&rows))
+}
+
+/// What of a residual that is larger than the tolerance is more than rounding.
+fn beyond(summary: &Summary, worst: f64) -> String {
+    match summary.residual_beyond_rounding {
+        Some(beyond) if worst > summary.tolerance => format!(", {beyond:.1e} beyond rounding"),
+        _ => String::new(),
+    }
+}
+
+fn solver_line(summary: &Summary) -> String {
+    let Summary { backend, status, iterations, level_iterations, .. } = summary;
+    let levels = level_iterations.len();
+    let on_levels = if levels > 1 { format!(" on the finest of {levels} levels") } else { String::new() };
+    format!("{backend}: {status} in {iterations} iterations{on_levels}")
+}
+
+/// What the bound rests on.
+fn guarantee(summary: &Summary) -> String {
+    let text = match summary.error_bound {
+        None => "",
+        Some(_) if summary.warnings.is_empty() => "up to the quadrature of the loads",
+        Some(_) => "if the loads are as the quadrature sees them",
+    };
+    text.into()
+}
+
+/// Where nothing is loaded, membranes at rest have no energy to compare the bound with.
+fn error_line(summary: &Summary, unloaded: bool) -> String {
+    let Some(bound) = summary.error_bound else { return String::new() };
+    let relative = match summary.relative_error_bound {
+        Some(relative) => format!("{:.2} %", 100.0 * relative),
+        None if unloaded => "nothing is loaded: rounding".into(),
+        None => "more than half of it: refine".into(),
+    };
+    format!("at most {bound:.3e} in the energy norm ({relative})")
+}
+
+fn polish_line(polish: PolishReport) -> String {
+    let PolishReport { kept, repairs, residual_before, residual_after, .. } = polish;
+    let verdict = if kept { "kept" } else { "not kept" };
+    let repairs = if repairs == 1 { "1 contact repair".into() } else { format!("{repairs} contact repairs") };
+    format!("{verdict}, {repairs}, residual {residual_before:.1e} -> {residual_after:.1e}")
+}

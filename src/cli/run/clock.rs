@@ -1,0 +1,105 @@
+//! The time that a run may take.
+
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::thread;
+use std::time::Instant;
+
+use super::watch::Watch;
+use crate::cli::failure::Failure;
+use crate::qp::{Status, TimeLimit};
+use crate::study::StudyError;
+
+/// Runs since a moment, to a limit if there is one.
+#[derive(Clone, Copy)]
+pub(crate) struct Clock {
+    start: Instant,
+    limit: Option<TimeLimit>,
+}
+
+impl Clock {
+    /// Starts now.
+    pub(crate) fn new(limit: Option<TimeLimit>) -> Self {
+        Self { start: Instant::now(), limit }
+    }
+
+    /// Has the run ended by `give_up` when its time is over, whatever it does then.
+    pub(crate) fn watch(&self, watch: &Watch, give_up: impl Fn() -> Failure + Send + Sync + 'static) {
+        if let Some(left) = self.left() {
+            watch.limit(left, give_up);
+        }
+    }
+
+    /// What is left of the limit, as a limit: of one that is over, next to nothing.
+    fn left(&self) -> Option<TimeLimit> {
+        self.limit.map(|limit| limit.left_since(self.start).unwrap_or(TimeLimit::SHORTEST))
+    }
+
+    /// Whether something that takes so many seconds ends in time.
+    pub(crate) fn allows(&self, seconds: f64) -> bool {
+        self.limit.is_none_or(|limit| self.start.elapsed().as_secs_f64() + seconds <= limit.seconds())
+    }
+
+    /// What a solver may take that has a limit of its own, or none.
+    pub(crate) fn of_solver(&self, own: Option<TimeLimit>) -> Option<TimeLimit> {
+        [own, self.left()].into_iter().flatten().min()
+    }
+
+    /// Whether a level has failed because the run's time was over.
+    pub(crate) fn has_stopped(&self, error: &StudyError) -> bool {
+        matches!(error, StudyError::Rejected { rejected, .. } if rejected.statistics.status == Status::TimeLimit)
+            && !self.allows(0.0)
+    }
+
+    /// What `work` makes, or nothing when the time is over before: then it is not waited for, and ends with the program.
+    pub(crate) fn in_time<T: Send + 'static>(&self, work: impl FnOnce() -> T + Send + 'static) -> Option<T> {
+        let Some(left) = self.left() else { return Some(work()) };
+        if !self.allows(0.0) {
+            return None;
+        }
+        let (done, result) = mpsc::channel();
+        thread::spawn(move || {
+            // Nobody waits any longer for what comes too late.
+            let _ = done.send(work());
+        });
+        match result.recv_timeout(left.duration()) {
+            Ok(made) => Some(made),
+            Err(RecvTimeoutError::Timeout) => None,
+            Err(RecvTimeoutError::Disconnected) => panic!("a thread beside the run is gone"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::*;
+
+    fn limit(seconds: f64) -> Option<TimeLimit> {
+        Some(TimeLimit::from_seconds(seconds).expect("a limit"))
+    }
+
+    #[test]
+    fn the_shorter_limit_holds() {
+        let endless = Clock::new(None);
+        assert!(endless.allows(1e9) && endless.of_solver(None).is_none());
+        assert_eq!(endless.of_solver(limit(5.0)), limit(5.0));
+        let clock = Clock::new(limit(100.0));
+        assert!(clock.allows(50.0) && !clock.allows(100.0));
+        assert_eq!(clock.of_solver(limit(5.0)), limit(5.0));
+        assert!(clock.of_solver(limit(500.0)) <= limit(100.0));
+        assert!(Clock::new(limit(1e19)).allows(1e9));
+        let over = Clock::new(limit(1e-12));
+        assert!(!over.allows(0.0) && over.of_solver(None).is_some());
+    }
+
+    #[test]
+    fn what_comes_too_late_is_not_waited_for() {
+        let slow = |milliseconds| move || thread::sleep(Duration::from_millis(milliseconds));
+        assert_eq!(Clock::new(None).in_time(slow(1)), Some(()));
+        assert_eq!(Clock::new(limit(60.0)).in_time(slow(1)), Some(()));
+        assert_eq!(Clock::new(limit(0.01)).in_time(slow(3_600_000)), None);
+        assert_eq!(Clock::new(limit(1e-9)).in_time(slow(0)), None, "nothing is begun");
+        assert_eq!(Clock::new(limit(1e19)).in_time(slow(1)), Some(()));
+    }
+}

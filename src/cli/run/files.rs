@@ -1,0 +1,68 @@
+//! The files that the program writes.
+
+pub(crate) const SUMMARY: &str = "summary.json";
+pub(crate) const SOLUTION: &str = "solution.vtu";
+pub(crate) const MEMBRANES: &str = "membranes.png";
+pub(crate) const DUAL: &str = "dual.vtu";
+pub(crate) const FLUX: &str = "flux.vtu";
+pub(crate) const MESH: &str = "mesh.png";
+
+pub(crate) const ERRORS: &str = "summary.csv";
+pub(crate) const ERRORS_TABLE: &str = "convergence.md";
+pub(crate) const RATES: &str = "convergence.png";
+
+pub(crate) const LEVELS: &str = "adapt.csv";
+pub(crate) const CHECKPOINT: &str = "checkpoint.npz";
+pub(crate) const HISTORY: &str = "adapt.png";
+
+pub(crate) const ROWS: &str = "bench.csv";
+pub(crate) const ROWS_TABLE: &str = "bench.md";
+pub(crate) const TIMES: &str = "bench.png";
+
+pub(crate) const QPS: &str = "problem.qps";
+pub(crate) const NPZ: &str = "problem.npz";
+/// In the order of [`QpPart::ALL`](crate::qp::QpPart::ALL).
+pub(crate) const MTX: [&str; 5] =
+    ["problem_P.mtx", "problem_A.mtx", "problem_q.mtx", "problem_b.mtx", "problem_c.mtx"];
+
+/// Results that belong together: they come and go together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Part {
+    /// A solution, of `solve` or of the last level of `adapt`, or the verdict on an answer.
+    Solution,
+    /// The levels of `converge`.
+    Converge,
+    /// The levels of `adapt`.
+    Adapt,
+    /// The rows of `bench`.
+    Bench,
+    /// A quadratic program.
+    Export,
+}
+
+impl Part {
+    pub(crate) const ALL: [Self; 5] =
+        [Self::Solution, Self::Converge, Self::Adapt, Self::Bench, Self::Export];
+
+    /// Its files, the one that vouches for the others first.
+    pub(crate) fn files(self) -> &'static [&'static str] {
+        match self {
+            Self::Solution => &[SUMMARY, SOLUTION, MEMBRANES, DUAL, FLUX, MESH],
+            Self::Converge => &[ERRORS, ERRORS_TABLE, RATES],
+            Self::Adapt => &[LEVELS, CHECKPOINT, HISTORY],
+            Self::Bench => &[ROWS, ROWS_TABLE, TIMES],
+            Self::Export => &[QPS, NPZ, MTX[0], MTX[1], MTX[2], MTX[3], MTX[4]],
+        }
+    }
+
+    /// Its name in the record of a folder.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Solution => "solution",
+            Self::Converge => "converge",
+            Self::Adapt => "adapt",
+            Self::Bench => "bench",
+            Self::Export => "export",
+        }
+    }
+}

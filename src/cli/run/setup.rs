@@ -1,0 +1,236 @@
+//! From a case file to a mesh, a discrete problem, and a solver.
+
+use std::io::{self, Read};
+use std::path::Path;
+use std::time::Instant;
+
+use super::input::{self, Input};
+use super::memory::Memory;
+use super::progress::Progress;
+use crate::cli::args::CaseArguments;
+use crate::cli::case::{BackendName, CaseFile, CaseId, MeshSource, SolverSettings};
+use crate::cli::failure::Failure;
+use crate::cli::terminal::grouped;
+use crate::discretization::Discretization;
+use crate::formats::gmsh::{PhysicalGroup, parse};
+use crate::mesh::{GmshMesh, MAX_VERTICES, MeshFamily, ReadError, estimated_vertices, generate, gmsh_nodes};
+use crate::output::Seconds;
+use crate::qp::Clarabel;
+use crate::solver::{ActiveSet, Auto, ContactSolver, Multigrid, QpSolver, SolverOptions};
+use crate::text::excerpt;
+
+/// The case and its meshes.
+pub(crate) struct Setup {
+    pub(crate) name: String,
+    pub(crate) id: CaseId,
+    pub(crate) case: CaseFile,
+    /// Refinements beside those of the case file.
+    further: usize,
+    pub(crate) family: MeshFamily,
+    /// Gmsh's numbers of the vertices of the coarse mesh; none of a mesh that was generated.
+    pub(crate) node_tags: Vec<u64>,
+    /// The physical groups of the mesh file.
+    pub(crate) groups: Vec<PhysicalGroup>,
+    pub(crate) seconds: Seconds,
+    pub(crate) memory: Memory,
+}
+
+impl Setup {
+    /// Reads the case file and makes its mesh.
+    pub(crate) fn new(arguments: &CaseArguments, progress: &Progress) -> Result<Self, Failure> {
+        let name = arguments.path.display().to_string();
+        let memory = Memory::new(arguments.memory_limit);
+        let text =
+            CaseFile::read_text(input::open(&arguments.path, Input::CaseFile, memory), &arguments.path)?;
+        let case = CaseFile::parse(&name, &text, &arguments.path)?;
+        progress.stage("making the mesh");
+        let start = Instant::now();
+        let Meshes { family, node_tags, groups } =
+            make_mesh(&name, &case, arguments.refine as usize, memory)?;
+        let id = CaseId::new(&name, &text, &case.mesh);
+        let seconds = Seconds { mesh: start.elapsed().as_secs_f64(), ..Seconds::default() };
+        let further = arguments.refine as usize;
+        Ok(Self { name, id, case, further, family, node_tags, groups, seconds, memory })
+    }
+
+    /// How often the mesh was refined, by the case file and further.
+    pub(crate) fn refinements(&self) -> usize {
+        self.case.refine + self.further
+    }
+
+    /// Refuses a solver that needs more memory on this mesh than there is.
+    pub(crate) fn check_memory(&self, backend: BackendName) -> Result<(), Failure> {
+        self.memory.check(&self.name, backend, self.family.mesh().points().len() as f64)
+    }
+
+    /// Assembles the discrete problem, and says how long it took.
+    pub(crate) fn discretize(&self, progress: &Progress) -> Result<(Discretization, Seconds), Failure> {
+        progress.stage(format!("assembling on {} vertices", grouped(self.family.mesh().points().len())));
+        let start = Instant::now();
+        let d = Discretization::new(&self.case.problem, self.family.mesh().clone()).map_err(|error| {
+            let vertices: Vec<usize> = error.vertex().into_iter().collect();
+            Failure::Input(format!("{}: {error}{}", self.name, gmsh_nodes(&vertices, &self.node_tags)))
+        })?;
+        Ok((d, Seconds { assembly: start.elapsed().as_secs_f64(), ..self.seconds }))
+    }
+}
+
+/// The groups that a run does not use, in one line for the terminal; nothing where there are none.
+pub(crate) fn unused_groups(groups: &[PhysicalGroup]) -> String {
+    /// Names are left out where the line would become wider than 80 columns.
+    const WIDEST: usize = 80 - ", and 1000 more".len();
+    let mut line = String::from("  physical groups not used:");
+    for (k, group) in groups.iter().enumerate() {
+        let name = excerpt(&group.to_string());
+        if k > 0 && line.chars().count() + 2 + name.chars().count() > WIDEST {
+            return format!("{line}, and {} more\n", groups.len() - k);
+        }
+        line += if k > 0 { ", " } else { " " };
+        line += &name;
+    }
+    if groups.is_empty() { String::new() } else { line + "\n" }
+}
+
+/// The meshes of a case, and what its mesh file calls their parts.
+struct Meshes {
+    family: MeshFamily,
+    node_tags: Vec<u64>,
+    groups: Vec<PhysicalGroup>,
+}
+
+/// Reads a mesh within the memory that there is.
+fn read_mesh(
+    name: &str,
+    path: &Path,
+    memory: Memory,
+    check: impl Fn(f64) -> Result<(), Failure>,
+) -> Result<GmshMesh, Failure> {
+    let refused = |error: ReadError| cannot_read(name, path, &error);
+    let read = || {
+        let mut bytes = Vec::new();
+        let file = input::open(path, Input::Mesh, memory)?;
+        // A file that grows is not followed.
+        let length = file.metadata()?.len();
+        file.take(length).read_to_end(&mut bytes)?;
+        Ok(parse(&bytes)?)
+    };
+    let triangulation = read().map_err(refused)?;
+    check(triangulation.points.len() as f64)?;
+    GmshMesh::new(triangulation).map_err(refused)
+}
+
+/// The coarse mesh of the case and its refinements.
+fn make_mesh(name: &str, case: &CaseFile, further: usize, memory: Memory) -> Result<Meshes, Failure> {
+    let bad_mesh =
+        |error: &dyn std::fmt::Display| Failure::Input(format!("{name}: [mesh], [domain]: {error}"));
+    let refinements = case.refine.saturating_add(further);
+    // Of all solvers, this one needs the least.
+    let check = |vertices: f64| {
+        let finest = check_refinements(name, vertices, refinements)?;
+        memory.check(name, BackendName::Multigrid, finest)
+    };
+    let (mut node_tags, mut groups) = (Vec::new(), Vec::new());
+    let mut family = match &case.mesh {
+        MeshSource::File(path) => {
+            let read = read_mesh(name, path, memory, check)?;
+            (node_tags, groups) = (read.node_tags, read.groups);
+            MeshFamily::polygonal(read.mesh)
+        }
+        MeshSource::Generator { domain, size, grading } => {
+            let vertices = estimated_vertices(domain, *size);
+            // What is no mesh at all, the generator refuses.
+            if vertices <= MAX_VERTICES {
+                check(vertices)?;
+            }
+            let mesh = generate(domain, *size).map_err(|error| bad_mesh(&error))?;
+            match *grading {
+                Some((point, exponent)) => {
+                    MeshFamily::graded(mesh, point, exponent).map_err(|error| bad_mesh(&error))?
+                }
+                None => MeshFamily::of_domain(mesh, domain),
+            }
+        }
+    };
+    check(family.mesh().points().len() as f64)?;
+    for _ in 0..refinements {
+        family
+            .refine()
+            .map_err(|error| bad_mesh(&format!("{error}{}", gmsh_nodes(&error.vertices(), &node_tags))))?;
+    }
+    Ok(Meshes { family, node_tags, groups })
+}
+
+/// What to do when the time is over before a mesh is there.
+pub(crate) fn too_early(case: &Path) -> impl Fn() -> Failure + Send + Sync + 'static {
+    let name = case.display().to_string();
+    move || {
+        let why = "the time was over before the first solve, and nothing is written";
+        Failure::NotCertified(format!("{name}: {why}; allow more, or take a coarser mesh (--time-limit)"))
+    }
+}
+
+/// The vertices after so many refinements; refuses such that lead beyond what can be stored.
+pub(crate) fn check_refinements(name: &str, vertices: f64, refinements: usize) -> Result<f64, Failure> {
+    // Each refinement makes four times as many.
+    let finest = vertices * 4f64.powf(refinements as f64);
+    if finest <= MAX_VERTICES {
+        return Ok(finest);
+    }
+    Err(Failure::Input(format!(
+        "{name}: {refinements} refinements lead beyond {MAX_VERTICES:.0e} vertices: refine less"
+    )))
+}
+
+fn cannot_read(case: &str, mesh: &Path, error: &ReadError) -> Failure {
+    let mesh = mesh.display();
+    Failure::Input(match error {
+        // It says what to do.
+        ReadError::Io(error) if error.kind() == io::ErrorKind::OutOfMemory => format!("{mesh}: {error}"),
+        ReadError::Io(_) => {
+            format!("{case}: `domain.mesh`: {mesh}: {error}; name a file, relative to the case file")
+        }
+        _ => format!("{mesh}: {error}"),
+    })
+}
+
+/// The solver of this name.
+pub(crate) fn solver(name: BackendName) -> Box<dyn ContactSolver> {
+    match name {
+        BackendName::Clarabel => Box::new(QpSolver::new(Clarabel)),
+        BackendName::ActiveSet => Box::new(ActiveSet),
+        BackendName::Multigrid => Box::new(Multigrid),
+        BackendName::Auto => Box::new(Auto),
+        #[cfg(feature = "osqp")]
+        BackendName::Osqp => Box::new(QpSolver::new(crate::qp::Osqp)),
+        #[cfg(not(feature = "osqp"))]
+        BackendName::Osqp => unreachable!("the name is refused where it is parsed"),
+    }
+}
+
+/// What the settings ask of a solver.
+pub(crate) fn options(settings: &SolverSettings) -> SolverOptions {
+    SolverOptions {
+        tolerance: settings.tolerance.or_default(),
+        max_iterations: settings.max_iterations,
+        time_limit: settings.time_limit,
+        polish: settings.polish,
+        warm_start: None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn groups_that_are_not_used_are_one_line_of_80_columns() {
+        let group =
+            |tag: u64| PhysicalGroup { dimension: 1, tag, name: (tag < 3).then(|| "an\nedge".into()) };
+        let line = |tags: std::ops::Range<u64>| unused_groups(&tags.map(group).collect::<Vec<_>>());
+        assert_eq!(line(0..0), "");
+        assert_eq!(line(2..4), "  physical groups not used: an\\nedge, curves 3\n");
+        let many = line(3..1003);
+        assert_eq!(many, "  physical groups not used: curves 3, curves 4, curves 5, and 997 more\n");
+        assert!(many.len() <= 81);
+    }
+}

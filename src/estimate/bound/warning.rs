@@ -1,0 +1,58 @@
+//! Loads that the quadrature knows too little of.
+
+use std::fmt;
+
+use crate::discretization::Discretization;
+
+/// Why the bound may not hold: the quadrature has not seen enough of a load.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum LoadWarning {
+    /// Two quadrature rules find loads that differ by more than the bound.
+    Unresolved {
+        /// 1 or 2.
+        membrane: usize,
+        /// By how much, in the energy norm.
+        difference: f64,
+        /// The bound.
+        bound: f64,
+    },
+    /// A load that is no constant is zero wherever the quadrature looks.
+    Vanishing {
+        /// 1 or 2.
+        membrane: usize,
+    },
+}
+
+impl LoadWarning {
+    /// Those of both loads of `d`, beside a bound.
+    pub(super) fn all(d: &Discretization, bound: f64) -> Vec<Self> {
+        let difference = d.quadrature_difference();
+        let of = |i: usize| {
+            let membrane = i + 1;
+            if difference[i] > bound {
+                Some(Self::Unresolved { membrane, difference: difference[i], bound })
+            } else {
+                d.moments[i].sees_nothing().then_some(Self::Vanishing { membrane })
+            }
+        };
+        (0..2).filter_map(of).collect()
+    }
+}
+
+impl fmt::Display for LoadWarning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unresolved { membrane, difference, bound } => write!(
+                f,
+                "load f{membrane}: two quadrature rules differ by {difference:.1e}, more than the bound {bound:.1e}, \
+                 which does not hold then: refine the mesh where the load acts"
+            ),
+            Self::Vanishing { membrane } => write!(
+                f,
+                "load f{membrane} is zero at all points of the quadrature: write 0 if that is meant, else refine the \
+                 mesh where the load acts"
+            ),
+        }
+    }
+}

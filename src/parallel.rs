@@ -1,0 +1,15 @@
+//! Work on all cores, or, without the feature `parallel`, on one: the same results either way.
+
+#[cfg(not(feature = "parallel"))]
+mod sequential;
+
+#[cfg(feature = "parallel")]
+pub(crate) use rayon::{join, prelude, scope};
+#[cfg(not(feature = "parallel"))]
+pub(crate) use sequential::{join, prelude, scope};
+
+/// For the record of a comparison.
+#[cfg(all(feature = "files", feature = "parallel"))]
+pub(crate) use rayon::current_num_threads;
+#[cfg(all(feature = "files", not(feature = "parallel")))]
+pub(crate) use sequential::current_num_threads;

@@ -1,0 +1,16 @@
+//! What the file of a case says about it.
+
+use std::sync::Arc;
+
+use super::decoupled::Decoupled;
+use super::parameter::{CaseError, Parameter, Values};
+
+/// Names, formulas, parameters of a case, and how its solution is made.
+pub(super) struct Description {
+    pub(super) name: &'static str,
+    pub(super) title: &'static str,
+    pub(super) letter: &'static str,
+    pub(super) formulas: &'static [&'static str],
+    pub(super) parameters: &'static [Parameter],
+    pub(super) build: fn(&Values) -> Result<Arc<dyn Decoupled>, CaseError>,
+}

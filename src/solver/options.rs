@@ -1,0 +1,43 @@
+//! What is asked of a solver.
+
+use std::time::Instant;
+
+use super::candidate::StartingPoint;
+use super::error::SolverError;
+use crate::qp::TimeLimit;
+
+/// What is asked of a solver.
+#[derive(Debug, Clone)]
+pub struct SolverOptions {
+    /// Largest residual of the optimality conditions, relative to the data ([`Scales`](crate::discretization::Scales)).
+    pub tolerance: f64,
+    /// Where to stop at the latest; `None`: the solver's own limit.
+    pub max_iterations: Option<usize>,
+    /// When to stop at the latest; `None`: no limit. Solvers look at the clock between their steps, of which a factorisation or
+    /// the set-up of all levels is one.
+    pub time_limit: Option<TimeLimit>,
+    /// Whether to make the result exact by solving for its contact set.
+    pub polish: bool,
+    /// A guess on this mesh to start from, for solvers that can.
+    pub warm_start: Option<StartingPoint>,
+}
+
+impl Default for SolverOptions {
+    fn default() -> Self {
+        Self { tolerance: 1e-8, max_iterations: None, time_limit: None, polish: true, warm_start: None }
+    }
+}
+
+impl SolverOptions {
+    /// When to stop a solve that has begun at `start`.
+    pub(crate) fn deadline(&self, start: Instant) -> Option<Instant> {
+        self.time_limit.and_then(|limit| limit.deadline(start))
+    }
+
+    pub(crate) fn check(&self) -> Result<(), SolverError> {
+        if !(self.tolerance > 0.0 && self.tolerance < 1.0) {
+            return Err(SolverError::Tolerance(self.tolerance));
+        }
+        Ok(())
+    }
+}
