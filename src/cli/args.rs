@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
@@ -72,6 +73,8 @@ pub(crate) struct SolveArguments {
     pub(crate) backend: Option<BackendName>,
     #[command(flatten)]
     pub(crate) output: OutputArguments,
+    #[command(flatten)]
+    pub(crate) pictures: PictureArguments,
     /// Most seconds of this run; see below
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) time_limit: Option<TimeLimit>,
@@ -118,6 +121,8 @@ pub(crate) struct ConvergeArguments {
     pub(crate) backend: Option<BackendName>,
     #[command(flatten)]
     pub(crate) output: OutputArguments,
+    #[command(flatten)]
+    pub(crate) pictures: PictureArguments,
 }
 
 #[derive(Debug, Args)]
@@ -137,6 +142,8 @@ pub(crate) struct AdaptArguments {
     pub(crate) backend: Option<BackendName>,
     #[command(flatten)]
     pub(crate) output: OutputArguments,
+    #[command(flatten)]
+    pub(crate) pictures: PictureArguments,
 }
 
 #[derive(Debug, Args)]
@@ -168,6 +175,8 @@ pub(crate) struct BenchArguments {
     pub(crate) no_run: bool,
     #[command(flatten)]
     pub(crate) output: OutputArguments,
+    #[command(flatten)]
+    pub(crate) pictures: PictureArguments,
     /// No output on the terminal but errors
     #[arg(long, short)]
     pub(crate) quiet: bool,
@@ -211,6 +220,24 @@ pub(crate) struct OutputArguments {
     pub(crate) overwrite: bool,
 }
 
+#[derive(Debug, Args)]
+pub(crate) struct PictureArguments {
+    /// Write no pictures
+    #[arg(long)]
+    pub(crate) no_picture: bool,
+    /// Their formats: png, svg, pdf
+    #[arg(
+        long = "pictures",
+        value_name = "F,...",
+        value_delimiter = ',',
+        default_value = "png",
+        value_parser = picture_format(),
+        hide_possible_values = true,
+        conflicts_with = "no_picture"
+    )]
+    pub(crate) picture_format: Vec<crate::pictures::Format>,
+}
+
 impl OutputArguments {
     /// The folder: the one named, else `out/` and the name of `case` without its ending.
     pub(crate) fn folder(&self, case: &Path) -> PathBuf {
@@ -251,6 +278,16 @@ pub(crate) struct CaseArguments {
     /// No output on the terminal but errors
     #[arg(long, short)]
     pub(crate) quiet: bool,
+}
+
+/// The formats of pictures by their names, which completions know.
+fn picture_format() -> impl TypedValueParser<Value = crate::pictures::Format> {
+    use crate::pictures::Format;
+    PossibleValuesParser::new(["png", "svg", "pdf"]).map(|name| match name.as_str() {
+        "svg" => Format::Svg,
+        "pdf" => Format::Pdf,
+        _ => Format::Png,
+    })
 }
 
 fn tolerance_or_auto(text: &str) -> Result<Tolerance, String> {

@@ -17,6 +17,7 @@ mod invariance;
 mod layers;
 mod manifest;
 mod mesh_files;
+mod pictures;
 mod plate;
 mod program;
 mod quadrature;

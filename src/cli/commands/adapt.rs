@@ -5,17 +5,18 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::solution::{A_SOLUTION, left_out_line, write_picture, write_solution};
+use super::solution::{A_SOLUTION, left_out_line, write_solution};
 use crate::action::ContactSolution;
 use crate::cli::args::AdaptArguments;
 use crate::cli::case::{BackendName, CaseFile};
 use crate::cli::failure::Failure;
 use crate::cli::run::clock::Clock;
 use crate::cli::run::files::{CHECKPOINT, HISTORY, LEVELS, MEMBRANES, MESH, Part, SOLUTION, SUMMARY};
-use crate::cli::run::folder::{Claim, Folder};
+use crate::cli::run::folder::{Claim, Folder, Results};
 use crate::cli::run::input::{self, Input};
 use crate::cli::run::levels::{GOES_ON, KEPT, Levels, MEMORY, TIME, failure, settings, too_late};
 use crate::cli::run::memory::Memory;
+use crate::cli::run::pictures::Pictures;
 use crate::cli::run::progress::Progress;
 use crate::cli::run::setup::{Setup, options, solver, too_early, unused_groups};
 use crate::cli::run::watch::Watch;
@@ -23,7 +24,7 @@ use crate::cli::terminal::{grouped, print};
 use crate::estimate::LoadWarning;
 use crate::mesh::{DualMesh, Mesh, MeshError, SubTriangulation};
 use crate::output::{Seconds, Summary, read_checkpoint, write_checkpoint};
-use crate::pictures::{Drawing, MeshPicture, RatesPicture, Series, render_rates, render_triangulation};
+use crate::pictures::{MeshPicture, RatesPicture, Series, render_rates, render_triangulation};
 use crate::study::{AdaptiveLevel, AdaptiveStudy, StudyError, exponent};
 
 /// The slope of the best possible rate: the error falls like the root of the number of vertices.
@@ -52,6 +53,7 @@ enum Stop {
 pub(crate) fn run(arguments: &AdaptArguments, watch: &Watch) -> Result<(), Failure> {
     let clock = Clock::new(arguments.time_limit);
     clock.watch(watch, too_early(&arguments.case.path));
+    let pictures = Pictures::new(&arguments.pictures, clock);
     let progress = Progress::new(arguments.case.quiet);
     let mut setup = Setup::new(&arguments.case, &progress)?;
     if let Some(backend) = arguments.backend {
@@ -94,11 +96,13 @@ pub(crate) fn run(arguments: &AdaptArguments, watch: &Watch) -> Result<(), Failu
     if study.solution().is_none() {
         (study, _) = resumed(&setup, &folder, levels.len())?;
     }
-    let left_out = write_results(&folder, &setup, &study, &levels, &clock)?;
+    let left_out = write_results(&folder, &setup, &study, &levels, &pictures)?;
     drop(progress);
     if !arguments.case.quiet {
         let warnings = study.solution().map_or(&[][..], |(_, bound)| &bound.warnings);
-        let table = table(&setup.case.title, &levels, warnings, folder.path(), &left_out);
+        let mut files = files(&pictures);
+        files.retain(|name| !left_out.contains(name));
+        let table = table(&setup.case.title, &levels, warnings, (folder.path(), &files), &left_out);
         print(&(table + &unused_groups(&setup.groups)))?;
     }
     verdict(&setup.name, arguments, &stop, &levels)
@@ -227,7 +231,7 @@ fn write_results(
     setup: &Setup,
     study: &AdaptiveStudy,
     levels: &[AdaptiveLevel],
-    clock: &Clock,
+    pictures: &Pictures,
 ) -> Result<Vec<&'static str>, Failure> {
     let case = &setup.case;
     let (Some((solution, bound)), Some(d), Some(last)) =
@@ -237,9 +241,9 @@ fn write_results(
     };
     let mesh = study.mesh();
     let mut results = folder.results(Part::Solution);
-    let mut left_out = write_solution(&mut results, &case.title, d, solution, bound, clock)?;
-    left_out.extend(write_picture(&mut results, MESH, mesh_picture(&case.title, mesh, solution, clock))?);
-    left_out.extend(write_picture(&mut results, HISTORY, history(&case.title, levels, clock))?);
+    let mut left_out = write_solution(&mut results, &case.title, d, solution, bound, pictures)?;
+    left_out.extend(write_mesh(&mut results, &case.title, mesh, solution, pictures)?);
+    left_out.extend(write_history(&mut results, &case.title, levels, pictures)?);
     let seconds = Seconds { bound: last.bound_seconds, ..Seconds::default() };
     let mut summary = Summary::new(&case.title, d, last.tolerance, Ok(solution), seconds, Some(bound))
         .with_unused_groups(&setup.groups);
@@ -250,25 +254,32 @@ fn write_results(
 }
 
 /// The last mesh with its contact set.
-fn mesh_picture(
+fn write_mesh(
+    results: &mut Results,
     title: &str,
     mesh: &Arc<Mesh>,
     solution: &ContactSolution,
-    clock: &Clock,
-) -> Option<Result<Drawing, String>> {
+    pictures: &Pictures,
+) -> Result<Vec<&'static str>, Failure> {
     let (title, mesh, contact) = (title.to_owned(), Arc::clone(mesh), solution.contact().to_vec());
-    clock.in_time(move || {
+    let draw = move || {
         let sub = SubTriangulation::new(&mesh).map_err(|error| error.to_string())?;
         let dual = DualMesh::new(&mesh, &sub);
         let picture = MeshPicture { title: &title, mesh: &mesh, dual: &dual, contact: Some(&contact) };
         render_triangulation(&picture).map_err(|error| error.to_string())
-    })
+    };
+    pictures.write(MESH, draw, |file, bytes| results.write(file, |out| out.write_all(bytes)))
 }
 
 /// The bound, the error and the estimator of all levels.
-fn history(title: &str, levels: &[AdaptiveLevel], clock: &Clock) -> Option<Result<Drawing, String>> {
+fn write_history(
+    results: &mut Results,
+    title: &str,
+    levels: &[AdaptiveLevel],
+    pictures: &Pictures,
+) -> Result<Vec<&'static str>, Failure> {
     let (title, levels) = (title.to_owned(), levels.to_vec());
-    clock.in_time(move || {
+    let draw = move || {
         let picture = render_rates(&RatesPicture {
             title: &title,
             abscissa: "vertices",
@@ -284,7 +295,8 @@ fn history(title: &str, levels: &[AdaptiveLevel], clock: &Clock) -> Option<Resul
             slopes: &OPTIMAL,
         });
         picture.map_err(|error| error.to_string())
-    })
+    };
+    pictures.write(HISTORY, draw, |file, bytes| results.write(file, |out| out.write_all(bytes)))
 }
 
 /// What is not known cannot be drawn.
@@ -292,12 +304,18 @@ fn values(levels: &[AdaptiveLevel], of: impl Fn(&AdaptiveLevel) -> Option<f64>) 
     levels.iter().map(|level| of(level).unwrap_or(f64::NAN)).collect()
 }
 
+/// What is written if there is time.
+fn files(pictures: &Pictures) -> Vec<&'static str> {
+    let [membranes, history, mesh] = [MEMBRANES, HISTORY, MESH].map(|picture| pictures.files(picture));
+    [vec![SOLUTION, SUMMARY], membranes, vec![LEVELS], history, mesh].concat()
+}
+
 /// The history for the eye.
 fn table(
     title: &str,
     levels: &[AdaptiveLevel],
     warnings: &[LoadWarning],
-    folder: &Path,
+    (folder, files): (&Path, &[&str]),
     left_out: &[&str],
 ) -> String {
     let mut text =
@@ -323,8 +341,6 @@ fn table(
     if !left_out.is_empty() {
         text += &format!("  left out: {}\n", left_out_line(left_out));
     }
-    let mut files = vec![SOLUTION, SUMMARY, MEMBRANES, LEVELS, HISTORY, MESH];
-    files.retain(|name| !left_out.contains(name));
     let files = files.join(", ");
     text + &format!("  files: {}/{{{files}}}\n", folder.display())
 }

@@ -9,9 +9,11 @@ use std::sync::Arc;
 use crate::cli::args::{BenchArguments, CaseArguments};
 use crate::cli::case::{BackendName, CaseId};
 use crate::cli::failure::Failure;
-use crate::cli::run::files::{Part, ROWS};
+use crate::cli::run::clock::Clock;
+use crate::cli::run::files::{Part, ROWS, TIMES};
 use crate::cli::run::folder::{Claim, Folder};
 use crate::cli::run::memory::Memory;
+use crate::cli::run::pictures::Pictures;
 use crate::cli::run::progress::Progress;
 use crate::cli::run::setup::{Setup, check_refinements, solver};
 use crate::cli::run::watch::Watch;
@@ -35,10 +37,11 @@ pub(crate) fn run(arguments: &BenchArguments, watch: &Watch) -> Result<(), Failu
         Some(path) => bench.run_case(path.clone(), arguments)?,
     };
     let Bench { title, rows, measured, .. } = bench;
-    write_results(&folder, &title, &rows)?;
+    let pictures = Pictures::new(&arguments.pictures, Clock::new(None));
+    write_results(&folder, &title, &rows, &pictures)?;
     drop(progress);
     if !arguments.quiet {
-        print(&table::table(&title, &rows, folder.path()))?;
+        print(&table::table(&title, &rows, (folder.path(), &pictures.files(TIMES))))?;
     }
     if arguments.no_run || rows[..measured].iter().any(|row| row.certified) {
         return Ok(());

@@ -11,11 +11,12 @@ use crate::cli::run::files::{ERRORS, ERRORS_TABLE, Part, RATES};
 use crate::cli::run::folder::{Claim, Folder};
 use crate::cli::run::levels::{GOES_ON, KEPT, Levels, MEMORY, TIME, failure, settings, too_late};
 use crate::cli::run::memory::Memory;
+use crate::cli::run::pictures::Pictures;
 use crate::cli::run::progress::Progress;
 use crate::cli::run::setup::{Setup, check_refinements, options, solver, too_early, unused_groups};
 use crate::cli::run::watch::Watch;
 use crate::cli::terminal::{grouped, print};
-use crate::pictures::{Format, RatesPicture, Series, render_rates};
+use crate::pictures::{RatesPicture, Series, render_rates};
 use crate::qp::TimeLimit;
 use crate::study::{ConvergenceStudy, LevelErrors, MEASURES, fitted_rate, markdown, rate};
 
@@ -28,6 +29,7 @@ const GROWTH: f64 = 4.0;
 pub(crate) fn run(arguments: &ConvergeArguments, watch: &Watch) -> Result<(), Failure> {
     let clock = Clock::new(arguments.time_limit);
     clock.watch(watch, too_early(&arguments.case.path));
+    let pictures = Pictures::new(&arguments.pictures, clock);
     let progress = Progress::new(arguments.case.quiet);
     let mut setup = Setup::new(&arguments.case, &progress)?;
     let Some(exact) = setup.case.exact.take() else {
@@ -68,10 +70,11 @@ pub(crate) fn run(arguments: &ConvergeArguments, watch: &Watch) -> Result<(), Fa
     };
     let stop = add_levels(&setup.name, &mut study, &mut levels, &limits, &kept, &progress)?;
     watch.lift();
-    let drawn = write_picture(&folder, &title, &levels, &clock)?;
+    let left_out = write_picture(&folder, &title, &levels, &pictures)?;
+    let drawn = if left_out.is_empty() { pictures.files(RATES) } else { Vec::new() };
     drop(progress);
     if !arguments.case.quiet {
-        print(&(table(&title, &levels, folder.path(), drawn) + &unused_groups(&setup.groups)))?;
+        print(&(table(&title, &levels, (folder.path(), &drawn), &left_out) + &unused_groups(&setup.groups)))?;
     }
     stop.map_or(Ok(()), |why| {
         let (done, of) = (levels.len(), arguments.levels);
@@ -143,34 +146,39 @@ fn add_levels(
     Ok(None)
 }
 
-/// The errors against the mesh size, if there is time; says whether there was.
+/// The errors against the mesh size, if there is time. What was left out is returned.
 fn write_picture(
     folder: &Folder,
     title: &str,
     levels: &[LevelErrors],
-    clock: &Clock,
-) -> Result<bool, Failure> {
+    pictures: &Pictures,
+) -> Result<Vec<&'static str>, Failure> {
     let h: Vec<f64> = levels.iter().map(|level| level.h).collect();
     let values: Vec<Vec<f64>> =
         MEASURES.iter().map(|measure| levels.iter().map(measure.of).collect()).collect();
     let title = title.to_owned();
-    let picture = clock.in_time(move || {
-        let series: Vec<Series> = MEASURES
-            .iter()
-            .zip(&values)
-            .map(|(measure, values)| Series { name: measure.name, values })
-            .collect();
-        render_rates(&RatesPicture { title: &title, abscissa: "h", h: &h, series: &series, slopes: &SLOPES })
-    });
-    let Some(png) = picture else { return Ok(false) };
-    let failed = |error: &dyn std::fmt::Display| Failure::Input(format!("{RATES}: {error}"));
-    let png = png.map_err(|error| failed(&error))?.encode(Format::Png).map_err(|error| failed(&error))?;
-    folder.write(RATES, |out| out.write_all(&png))?;
-    Ok(true)
+    let draw = move || {
+        let names = MEASURES.map(|measure| typeset(measure.name));
+        let series: Vec<Series> =
+            names.iter().zip(&values).map(|(name, values)| Series { name, values }).collect();
+        let picture = RatesPicture { title: &title, abscissa: "h", h: &h, series: &series, slopes: &SLOPES };
+        render_rates(&picture).map_err(|error| error.to_string())
+    };
+    pictures.write(RATES, draw, |file, bytes| folder.write(file, |out| out.write_all(bytes)))
+}
+
+/// The name of a measure as a paper has it.
+fn typeset(name: &str) -> String {
+    name.replace("lambda", "λ").replace("H^-1", "H⁻¹").replace("L2", "L²").replace("H1", "H¹")
 }
 
 /// The errors with their rates, for the eye.
-fn table(title: &str, levels: &[LevelErrors], folder: &Path, drawn: bool) -> String {
+fn table(
+    title: &str,
+    levels: &[LevelErrors],
+    (folder, drawn): (&Path, &[&str]),
+    left_out: &[&str],
+) -> String {
     let mut text = format!("{title}\n  vertices");
     for measure in MEASURES {
         text += &format!(" {:>8}", shortened(measure.name));
@@ -198,12 +206,10 @@ fn table(title: &str, levels: &[LevelErrors], folder: &Path, drawn: bool) -> Str
         text.push('\n');
     }
     text += "  index: the guaranteed bound over the true error in the energy norm\n";
-    let mut files = format!("{ERRORS}, {ERRORS_TABLE}");
-    if drawn {
-        files += &format!(", {RATES}");
-    } else {
-        text += &format!("  left out: {}\n", left_out_line(&[RATES]));
+    if !left_out.is_empty() {
+        text += &format!("  left out: {}\n", left_out_line(left_out));
     }
+    let files = [&[ERRORS, ERRORS_TABLE], drawn].concat().join(", ");
     text + &format!("  files: {}/{{{files}}}\n", folder.display())
 }
 

@@ -4,47 +4,33 @@ use std::sync::Arc;
 
 use crate::action::ContactSolution;
 use crate::cli::failure::Failure;
-use crate::cli::run::clock::Clock;
 use crate::cli::run::files::{MEMBRANES, SOLUTION};
 use crate::cli::run::folder::Results;
+use crate::cli::run::pictures::Pictures;
 use crate::discretization::Discretization;
 use crate::estimate::ErrorBound;
 use crate::output::write_vtu;
 use crate::pictures::membranes::{Picture, render};
-use crate::pictures::{Drawing, Format};
 
 /// The settings of a folder that holds one. Another mesh, solver, or tolerance for the same case takes the place of the one before.
 pub(super) const A_SOLUTION: &str = "a solution";
 
-/// Writes `solution.vtu`, and `membranes.png` if there is time. What was left out is returned.
+/// Writes `solution.vtu`, and the picture of the membranes if there is time. What was left out is returned.
 pub(super) fn write_solution(
     results: &mut Results,
     title: &str,
     d: &Discretization,
     solution: &ContactSolution,
     bound: &ErrorBound,
-    clock: &Clock,
+    pictures: &Pictures,
 ) -> Result<Vec<&'static str>, Failure> {
     results.write(SOLUTION, |out| write_vtu(d.mesh(), solution, bound, out))?;
     let (title, mesh, solution) = (title.to_owned(), Arc::clone(d.mesh()), solution.clone());
-    let picture = clock.in_time(move || {
+    let draw = move || {
         let picture = Picture::of(&title, &mesh, &solution);
         render(&picture).map_err(|error| error.to_string())
-    });
-    write_picture(results, MEMBRANES, picture)
-}
-
-/// Writes a picture that was ready in time; else its name is returned.
-pub(super) fn write_picture(
-    results: &mut Results,
-    name: &'static str,
-    picture: Option<Result<Drawing, String>>,
-) -> Result<Vec<&'static str>, Failure> {
-    let Some(drawing) = picture else { return Ok(vec![name]) };
-    let png = drawing.and_then(|drawing| drawing.encode(Format::Png).map_err(|error| error.to_string()));
-    let png = png.map_err(|error| Failure::Input(format!("{name}: {error}")))?;
-    results.write(name, |out| out.write_all(&png))?;
-    Ok(Vec::new())
+    };
+    pictures.write(MEMBRANES, draw, |file, bytes| results.write(file, |out| out.write_all(bytes)))
 }
 
 /// What to say of files that were left out.

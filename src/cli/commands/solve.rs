@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::solution::{A_SOLUTION, left_out_line, write_picture, write_solution};
+use super::solution::{A_SOLUTION, left_out_line, write_solution};
 use crate::action::{ContactSolution, Rejected};
 use crate::cli::args::SolveArguments;
 use crate::cli::case::CaseFile;
@@ -12,6 +12,7 @@ use crate::cli::failure::Failure;
 use crate::cli::run::clock::Clock;
 use crate::cli::run::files::{DUAL, FLUX, MEMBRANES, MESH, Part, SOLUTION, SUMMARY};
 use crate::cli::run::folder::{Claim, Folder, Results};
+use crate::cli::run::pictures::Pictures;
 use crate::cli::run::progress::Progress;
 use crate::cli::run::setup::{Setup, options, solver, too_early, unused_groups};
 use crate::cli::run::watch::Watch;
@@ -32,6 +33,7 @@ const UNTOUCHED: &str = "it is as it was";
 pub(crate) fn run(arguments: &SolveArguments, watch: &Watch) -> Result<(), Failure> {
     let clock = Clock::new(arguments.time_limit);
     clock.watch(watch, too_early(&arguments.case.path));
+    let pictures = Pictures::new(&arguments.pictures, clock);
     let progress = Progress::new(arguments.case.quiet);
     let mut setup = Setup::new(&arguments.case, &progress)?;
     override_settings(&mut setup, arguments, &clock);
@@ -51,12 +53,14 @@ pub(crate) fn run(arguments: &SolveArguments, watch: &Watch) -> Result<(), Failu
     match result {
         Ok(bounded) => {
             progress.stage("writing the results");
-            let summary = write_results(&setup, &d, &bounded, seconds, (&folder, &clock), arguments.dual)?;
+            let summary =
+                write_results(&setup, &d, &bounded, seconds, (&folder, &clock, &pictures), arguments.dual)?;
             drop(progress);
             if !arguments.case.quiet {
                 let unloaded = d.load().iter().flatten().all(|&load| load == 0.0);
                 let polish = bounded.solution.statistics().polish;
-                let table = table(&summary, polish, unloaded, folder.path(), arguments.dual);
+                let files = files(&pictures, arguments.dual);
+                let table = table(&summary, polish, unloaded, folder.path(), files);
                 print(&(table + &unused_groups(&setup.groups)))?;
             }
             Ok(())
@@ -96,7 +100,7 @@ fn write_results(
     d: &Discretization,
     bounded: &Bounded,
     seconds: Seconds,
-    (folder, clock): (&Folder, &Clock),
+    (folder, clock, pictures): (&Folder, &Clock, &Pictures),
     dual: bool,
 ) -> Result<Summary, Failure> {
     let start = Instant::now();
@@ -105,9 +109,9 @@ fn write_results(
     let mut results = folder.results(Part::Solution);
     let mut left_out = Vec::new();
     if dual {
-        left_out.extend(write_dual(&mut results, &setup.case, d, solution, clock)?);
+        left_out.extend(write_dual(&mut results, &setup.case, d, solution, (clock, pictures))?);
     }
-    left_out.extend(write_solution(&mut results, title, d, solution, bound, clock)?);
+    left_out.extend(write_solution(&mut results, title, d, solution, bound, pictures)?);
     let output = start.elapsed().as_secs_f64();
     let seconds = Seconds { bound: *bound_seconds, output, ..seconds };
     let mut summary = Summary::new(title, d, *tolerance, Ok(solution), seconds, Some(bound))
@@ -171,19 +175,20 @@ fn write_dual(
     case: &CaseFile,
     d: &Discretization,
     solution: &ContactSolution,
-    clock: &Clock,
+    (clock, pictures): (&Clock, &Pictures),
 ) -> Result<Vec<&'static str>, Failure> {
+    let left_out = |names: &[&'static str]| Ok([names, &pictures.files(MESH)].concat());
     let bad_input = |name: &str, error: &dyn std::fmt::Display| Failure::Input(format!("{name}: {error}"));
     let mesh = d.mesh();
     if !clock.allows(0.0) {
-        return Ok(vec![DUAL, FLUX, MESH]);
+        return left_out(&[DUAL, FLUX]);
     }
     let sub = SubTriangulation::new(mesh).map_err(|error| bad_input(DUAL, &error))?;
     let dual = DualMesh::new(mesh, &sub);
     results.write(DUAL, |out| write_dual_vtu(&dual, solution, out))?;
 
     if !clock.allows(0.0) {
-        return Ok(vec![FLUX, MESH]);
+        return left_out(&[FLUX]);
     }
     let [f1, f2] = case.problem.load();
     let load = |f| element_loads(mesh, f).map_err(|error| bad_input(FLUX, &error));
@@ -192,11 +197,22 @@ fn write_dual(
     results.write(FLUX, |out| write_flux_vtu(&sub, &fluxes, solution, out))?;
 
     let (title, mesh, contact) = (case.title.clone(), Arc::clone(mesh), solution.contact().to_vec());
-    let picture = clock.in_time(move || {
+    let draw = move || {
         let picture = MeshPicture { title: &title, mesh: &mesh, dual: &dual, contact: Some(&contact) };
         render_mesh(&picture).map_err(|error| error.to_string())
-    });
-    write_picture(results, MESH, picture)
+    };
+    pictures.write(MESH, draw, |file, bytes| results.write(file, |out| out.write_all(bytes)))
+}
+
+/// What is written if there is time.
+fn files(pictures: &Pictures, dual: bool) -> Vec<&'static str> {
+    let mut files = vec![SOLUTION, SUMMARY];
+    files.extend(pictures.files(MEMBRANES));
+    if dual {
+        files.extend([DUAL, FLUX]);
+        files.extend(pictures.files(MESH));
+    }
+    files
 }
 
 /// The summary for the eye.
@@ -205,7 +221,7 @@ fn table(
     polish: Option<PolishReport>,
     unloaded: bool,
     folder: &Path,
-    dual: bool,
+    mut files: Vec<&str>,
 ) -> String {
     let number = |value: Option<f64>| value.map_or_else(String::new, |value| fixed(value, 8));
     let interior = summary.unknowns / 2;
@@ -216,10 +232,6 @@ fn table(
             .fold(r.variational_inequality, f64::max)
     });
     let seconds = &summary.seconds;
-    let mut files = vec![SOLUTION, SUMMARY, MEMBRANES];
-    if dual {
-        files.extend([DUAL, FLUX, MESH]);
-    }
     files.retain(|name| !summary.left_out.contains(name));
     let files = files.join(", ");
     let rows = [

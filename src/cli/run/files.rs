@@ -1,23 +1,37 @@
 //! The files that the program writes.
 
+use crate::pictures::Format;
+
+/// The files of one picture, in the order of [`FORMATS`].
+pub(crate) type Picture = [&'static str; 3];
+
+/// The formats of pictures.
+pub(crate) const FORMATS: [Format; 3] = [Format::Png, Format::Svg, Format::Pdf];
+
+macro_rules! picture {
+    ($stem:literal) => {
+        [concat!($stem, ".png"), concat!($stem, ".svg"), concat!($stem, ".pdf")]
+    };
+}
+
 pub(crate) const SUMMARY: &str = "summary.json";
 pub(crate) const SOLUTION: &str = "solution.vtu";
-pub(crate) const MEMBRANES: &str = "membranes.png";
+pub(crate) const MEMBRANES: Picture = picture!("membranes");
 pub(crate) const DUAL: &str = "dual.vtu";
 pub(crate) const FLUX: &str = "flux.vtu";
-pub(crate) const MESH: &str = "mesh.png";
+pub(crate) const MESH: Picture = picture!("mesh");
 
 pub(crate) const ERRORS: &str = "summary.csv";
 pub(crate) const ERRORS_TABLE: &str = "convergence.md";
-pub(crate) const RATES: &str = "convergence.png";
+pub(crate) const RATES: Picture = picture!("convergence");
 
 pub(crate) const LEVELS: &str = "adapt.csv";
 pub(crate) const CHECKPOINT: &str = "checkpoint.npz";
-pub(crate) const HISTORY: &str = "adapt.png";
+pub(crate) const HISTORY: Picture = picture!("adapt");
 
 pub(crate) const ROWS: &str = "bench.csv";
 pub(crate) const ROWS_TABLE: &str = "bench.md";
-pub(crate) const TIMES: &str = "bench.png";
+pub(crate) const TIMES: Picture = picture!("bench");
 
 pub(crate) const QPS: &str = "problem.qps";
 pub(crate) const NPZ: &str = "problem.npz";
@@ -47,10 +61,21 @@ impl Part {
     /// Its files, the one that vouches for the others first.
     pub(crate) fn files(self) -> &'static [&'static str] {
         match self {
-            Self::Solution => &[SUMMARY, SOLUTION, MEMBRANES, DUAL, FLUX, MESH],
-            Self::Converge => &[ERRORS, ERRORS_TABLE, RATES],
-            Self::Adapt => &[LEVELS, CHECKPOINT, HISTORY],
-            Self::Bench => &[ROWS, ROWS_TABLE, TIMES],
+            Self::Solution => &[
+                SUMMARY,
+                SOLUTION,
+                MEMBRANES[0],
+                MEMBRANES[1],
+                MEMBRANES[2],
+                DUAL,
+                FLUX,
+                MESH[0],
+                MESH[1],
+                MESH[2],
+            ],
+            Self::Converge => &[ERRORS, ERRORS_TABLE, RATES[0], RATES[1], RATES[2]],
+            Self::Adapt => &[LEVELS, CHECKPOINT, HISTORY[0], HISTORY[1], HISTORY[2]],
+            Self::Bench => &[ROWS, ROWS_TABLE, TIMES[0], TIMES[1], TIMES[2]],
             Self::Export => &[QPS, NPZ, MTX[0], MTX[1], MTX[2], MTX[3], MTX[4]],
         }
     }

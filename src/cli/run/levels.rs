@@ -3,6 +3,7 @@
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
+use super::files::Picture;
 use super::folder::Folder;
 use super::setup::Setup;
 use crate::cli::case::SolverSettings;
@@ -36,7 +37,7 @@ pub(crate) struct Levels<'a> {
     /// The name of the table.
     pub(crate) table: &'static str,
     /// The picture of them, which goes when there are more.
-    pub(crate) picture: &'static str,
+    pub(crate) picture: Picture,
 }
 
 impl Levels<'_> {
@@ -49,7 +50,7 @@ impl Levels<'_> {
 
     /// Writes all rows anew.
     pub(crate) fn write<T: Serialize>(&self, rows: &[T]) -> Result<(), Failure> {
-        self.folder.remove(self.picture)?;
+        self.picture.iter().try_for_each(|file| self.folder.remove(file))?;
         self.folder.write(self.table, |out| {
             let mut writer = csv::Writer::from_writer(out);
             rows.iter().try_for_each(|row| writer.serialize(row))?;

@@ -7,7 +7,8 @@ use crate::cli::run::files::{ROWS, ROWS_TABLE, TIMES};
 use crate::cli::run::folder::Folder;
 use crate::cli::run::input::{self, Input};
 use crate::cli::run::memory::Memory;
-use crate::pictures::{Format, Times, TimesPicture, render_times};
+use crate::cli::run::pictures::Pictures;
+use crate::pictures::{Drawing, Times, TimesPicture, render_times};
 use crate::study::comparison::{Curve, ORIGIN, Row, curves, markdown};
 
 /// The slopes to compare with: work in proportion to the vertices, and that of a sparse factorisation in the plane.
@@ -45,8 +46,23 @@ pub(super) fn write_rows(folder: &Folder, rows: &[Row]) -> Result<(), Failure> {
 }
 
 /// Table and picture.
-pub(super) fn write_results(folder: &Folder, title: &str, rows: &[Row]) -> Result<(), Failure> {
+pub(super) fn write_results(
+    folder: &Folder,
+    title: &str,
+    rows: &[Row],
+    pictures: &Pictures,
+) -> Result<(), Failure> {
     folder.write(ROWS_TABLE, |out| out.write_all(markdown(rows).as_bytes()))?;
+    // Of other rows, or in formats that nobody wants now.
+    TIMES.iter().try_for_each(|file| folder.remove(file))?;
+    let (title, rows) = (format!("{title}: time to a certified solution"), rows.to_vec());
+    let draw = move || Ok(picture(&title, &rows));
+    pictures.write(TIMES, draw, |file, bytes| folder.write(file, |out| out.write_all(bytes)))?;
+    Ok(())
+}
+
+/// The times of all curves, each in the group of who ran it.
+fn picture(title: &str, rows: &[Row]) -> Drawing {
     let curves = curves(rows);
     let names = names(&curves);
     let points: Vec<Vec<[f64; 2]>> = curves
@@ -60,11 +76,7 @@ pub(super) fn write_results(folder: &Folder, title: &str, rows: &[Row]) -> Resul
         .filter(|((_, points), _)| !points.is_empty())
         .map(|((name, points), curve)| Times { name, group: group(curve), points })
         .collect();
-    let title = format!("{title}: time to a certified solution");
-    let png = render_times(&TimesPicture { title: &title, curves: &drawn, slopes: &SLOPES })
-        .encode(Format::Png)
-        .map_err(|error| Failure::Input(format!("{TIMES}: {error}")))?;
-    folder.write(TIMES, |out| out.write_all(&png))
+    render_times(&TimesPicture { title, curves: &drawn, slopes: &SLOPES })
 }
 
 /// Who ran a solver.

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::files::solver_name;
-use crate::cli::run::files::{ROWS, ROWS_TABLE, TIMES};
+use crate::cli::run::files::{ROWS, ROWS_TABLE};
 use crate::cli::terminal::grouped;
 use crate::study::comparison::{Row, curves, slope};
 
@@ -12,7 +12,7 @@ const NAME: usize = 22;
 const STATUS: usize = 17;
 
 /// The rows mesh by mesh, and the fitted slopes.
-pub(super) fn table(title: &str, rows: &[Row], folder: &Path) -> String {
+pub(super) fn table(title: &str, rows: &[Row], (folder, pictures): (&Path, &[&str])) -> String {
     let mut text = format!("{title}\n");
     let mut meshes: Vec<(&str, usize)> = Vec::new();
     for row in rows {
@@ -39,7 +39,8 @@ pub(super) fn table(title: &str, rows: &[Row], folder: &Path) -> String {
         let exponent = slope(rows, curve).map_or_else(|| "-".into(), |slope| format!("{slope:.2}"));
         text += &format!("  {:NAME$} {exponent:>9}{problem}\n", cut(&solver_name(&curve), NAME));
     }
-    text + &format!("  files: {}/{{{ROWS}, {ROWS_TABLE}, {TIMES}}}\n", folder.display())
+    let files = [&[ROWS, ROWS_TABLE], pictures].concat().join(", ");
+    text + &format!("  files: {}/{{{files}}}\n", folder.display())
 }
 
 /// What tells meshes apart; other programs need not know `n`.
@@ -99,7 +100,7 @@ mod tests {
             ..row.clone()
         };
         let quick = Row { solver: "quick".into(), certified: true, status: "solved".into(), ..row };
-        let text = table("a title", &[slow, quick], Path::new("out/bench"));
+        let text = table("a title", &[slow, quick], (Path::new("out/bench"), &["bench.png"]));
         assert!(text.lines().all(|line| line.chars().count() <= COLUMNS), "{text}");
         let of = |name: &str| text.lines().find(|line| line.trim_start().starts_with(name)).unwrap();
         assert!(
@@ -122,7 +123,7 @@ mod tests {
         let text = table(
             "",
             &[row(8, "rust"), row(16, "rust"), row(4, "other"), Row { n: None, ..row(8, "other") }],
-            Path::new(""),
+            (Path::new(""), &[]),
         );
         let headings: Vec<&str> = text.lines().filter(|line| line.contains("square")).collect();
         let expected = [(4, 25), (8, 81), (16, 289)];
