@@ -82,10 +82,10 @@ impl Axis {
         if self.exponent == 0 { String::new() } else { format!("×10{}", superscript(self.exponent)) }
     }
 
-    /// A tick at the high end, to a thousandth of the length.
-    pub(crate) fn greatest(&self) -> Tick {
+    /// A tick at a value, to a thousandth of the length.
+    pub(crate) fn tick_at(&self, value: f64) -> Tick {
         let step = round_step((self.high - self.low) / 1000.0);
-        Tick { place: 1.0, label: number(self.high, step) }
+        Tick { place: self.place(value), label: number(value / self.unit, step) }
     }
 
     /// Round ticks, about `count` of them.

@@ -31,7 +31,7 @@ pub(crate) enum Shape {
     /// Fine pixels from an upper left corner.
     Bitmap { corner: [usize; 2], bitmap: Bitmap },
     /// Another canvas, cut off at its edges, from an upper left corner.
-    Window { corner: [usize; 2], canvas: Canvas },
+    Window { corner: [usize; 2], canvas: Box<Canvas> },
 }
 
 /// Fine pixels: red, green, blue, and how much they cover.
@@ -113,7 +113,7 @@ impl Canvas {
 
     /// Puts another canvas onto this one, its upper left corner to the pixel `corner`; it must fit.
     pub(crate) fn paste(&mut self, canvas: Canvas, corner: [usize; 2]) {
-        self.shapes.push(Shape::Window { corner, canvas });
+        self.shapes.push(Shape::Window { corner, canvas: Box::new(canvas) });
     }
 
     /// One line of text, its capitals centred on the height of `at`; `size` is the height of a line.

@@ -77,7 +77,7 @@ impl Map {
         self.cut(canvas, cut);
         self.headings(canvas, scene);
         if scene.pressed {
-            color_bar(canvas, &scene.force, self.frame);
+            color_bar(canvas, &scene.force, scene.greatest, self.frame);
         }
         if !scene.touching {
             let [x, y] = self.frame.at([0.5, 0.5]);
@@ -170,7 +170,7 @@ impl Map {
 }
 
 /// The colours of lambda with their values, right of the map.
-fn color_bar(canvas: &mut Canvas, axis: &Axis, map: Frame) {
+fn color_bar(canvas: &mut Canvas, axis: &Axis, greatest: f64, map: Frame) {
     let height = map.height.max(240.0);
     let bar =
         Frame { left: map.right() + 80.0, top: map.top + (map.height - height) / 2.0, width: 26.0, height };
@@ -183,7 +183,7 @@ fn color_bar(canvas: &mut Canvas, axis: &Axis, map: Frame) {
     bar.outline(canvas);
     // The greatest value has a tick of its own; others give way to it.
     const APART: f64 = 0.07;
-    let greatest = axis.greatest();
+    let greatest = axis.tick_at(greatest);
     let mut ticks = axis.ticks(6);
     ticks.retain(|tick| (tick.place - greatest.place).abs() > APART);
     ticks.push(greatest);

@@ -20,6 +20,8 @@ pub(super) struct Scene<'a> {
     pub(super) plane: [Axis; 2],
     /// The axis of `u1` and `u2` together.
     pub(super) height: Axis,
+    /// The greatest lambda, at least zero.
+    pub(super) greatest: f64,
     /// The axis of lambda, zero included.
     pub(super) force: Axis,
     /// The area of the dual cells `D_a` in contact over that of the domain: each vertex has a third of its triangles.
@@ -50,6 +52,7 @@ impl<'a> Scene<'a> {
             levels: heights.map(|(&u1, &u2)| [height.place(u1), height.place(u2)]).collect(),
             plane,
             height,
+            greatest: forces.clone().fold(0.0, f64::max),
             force: Axis::over(forces, true),
             boundary: boundary_edges(picture.triangles),
             touching: used.iter().any(|&v| picture.contact[v]),

@@ -58,7 +58,7 @@ impl Cut {
 fn peak(scene: &Scene, axis: usize, centre: f64) -> Option<usize> {
     const AS_GREAT: f64 = 0.999;
     let pressed = || scene.triangles().iter().flatten().copied().filter(|&v| scene.in_contact(v));
-    let greatest = pressed().map(|v| scene.lambda(v)).fold(0.0, f64::max);
+    let greatest = scene.greatest;
     let distance = |v: usize| (scene.place(v)[axis] - centre).abs();
     let peaks = pressed().filter(|&v| greatest > 0.0 && scene.lambda(v) >= AS_GREAT * greatest);
     peaks.min_by(|&v, &w| distance(v).total_cmp(&distance(w)))

@@ -9,9 +9,9 @@ use crate::pictures::drawing::frame::{Frame, NORMAL, SMALL};
 
 /// Width of the curves in pixels.
 const CURVE: f64 = 4.0;
-/// The greatest lambda is written to this part of its range.
-const MAXIMUM: f64 = 1e-3;
-/// Room for its label above the bars, as part of their range.
+/// Bars are wider by this part of a pixel.
+const OVERLAP: f64 = 0.2;
+/// Room for the greatest lambda above the bars, as part of their range.
 const OVER_BARS: f64 = 0.42;
 /// Room for labels above and below the curves, as part of their range.
 const HEADROOM: f64 = 0.28;
@@ -84,9 +84,12 @@ impl<'a> SectionPlot<'a> {
         }
         let zero = self.lambda.place(0.0);
         let forces = self.section.forces();
+        // Neighbours overlap a little: no paper shines through between them.
+        let overlap = OVERLAP / self.force.width;
         for &([start, end], lambda) in &forces {
             let level = self.lambda.place(lambda);
-            let corners = [self.force.at([start, level.max(zero)]), self.force.at([end, level.min(zero)])];
+            let corners =
+                [self.force.at([start, level.max(zero)]), self.force.at([end + overlap, level.min(zero)])];
             canvas.fill(corners, force(self.scene.force.place(lambda)));
         }
         let greatest = forces.iter().max_by(|a, b| a.1.total_cmp(&b.1));
@@ -98,7 +101,7 @@ impl<'a> SectionPlot<'a> {
     /// The greatest lambda of the section, over its place.
     fn greatest(&self, canvas: &mut Canvas, along: f64, lambda: f64) {
         let axis = &self.scene.force;
-        let text = format!("max {}", axis.round(axis.place(lambda), MAXIMUM).label);
+        let text = format!("max {}", axis.tick_at(lambda).label);
         let [x, y] = self.force.at([along, self.lambda.place(lambda)]);
         let half = canvas.width(&text, SMALL) / 2.0 + 6.0;
         let x = x.clamp(self.force.left + half, self.force.right() - half);

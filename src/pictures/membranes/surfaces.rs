@@ -36,6 +36,8 @@ pub(super) fn draw(canvas: &mut Canvas, scene: &Scene, section: &Section, room: 
     canvas.bitmap([room.left, room.top].map(|x| x as usize), upper.over(&lower, VEIL));
     names(canvas, &lower, &upper, room);
     axes(canvas, scene, cut, &view);
+    let above = [room.left + 20.0, room.top + 0.06 * room.height];
+    canvas.text(&view.enlargement(scene), above, SMALL, INK, Anchor::Left);
 }
 
 /// A membrane with its boundary and its line along the section.
@@ -139,8 +141,7 @@ fn heights(canvas: &mut Canvas, scene: &Scene, view: &View) {
     }
     let [x, y] = at(1.0);
     let name = format!("u₁, u₂{}", scene.height.suffix());
-    canvas.text(&name, [x - 40.0, y - 62.0], NORMAL, INK, Anchor::Left);
-    canvas.text(&view.enlargement(scene), [x - 40.0, y - 30.0], SMALL, INK, Anchor::Left);
+    canvas.text(&name, [x - 40.0, y - 30.0], NORMAL, INK, Anchor::Left);
 }
 
 /// Names with leaders to a visible point of what they name.

@@ -9,9 +9,9 @@ use crate::pictures::drawing::canvas::Canvas;
 use crate::pictures::drawing::encode::Drawing;
 use crate::pictures::drawing::heading::heading;
 
-/// Errors below this part of the greatest one, as a decimal logarithm, are rounding: an error of zero, in exact arithmetic,
-/// would squash all others.
-const ROUNDING: f64 = -11.0;
+/// Errors below this part of the greatest one, as a decimal logarithm, are those of solver and rounding: an error of zero
+/// in exact arithmetic would squash all others.
+const ROUNDING: f64 = -9.0;
 
 /// Errors on a sequence of meshes, to be drawn.
 #[derive(Clone, Copy, Debug)]
@@ -53,7 +53,7 @@ pub enum RatesPictureError {
 }
 
 /// Draws errors against `h` with the slopes of their last segments, the same for the same data, of 1800 x 1200 pixels.
-/// Neighbouring levels are joined where both can be drawn. Errors below 1e-11 of the greatest are marked on the lower edge.
+/// Neighbouring levels are joined where both can be drawn. Errors below 1e-9 of the greatest are marked on the lower edge.
 ///
 /// # Errors
 /// See [`RatesPictureError`]; any values can be drawn, also none.

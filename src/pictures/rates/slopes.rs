@@ -12,6 +12,8 @@ const WIDTH: f64 = 0.2;
 /// Their greatest height, and their distance from the curves and the corner, as parts of the plot.
 const HEIGHT: f64 = 0.35;
 const APART: f64 = 0.05;
+/// Their distance from the lower edge, where "slope" stands between, in distances from the curves.
+const UNDER: f64 = 1.8;
 
 /// Rays of given slopes; places are decimal logarithms.
 pub(super) struct Fan {
@@ -43,8 +45,8 @@ impl Fan {
         let span = [far.min(far - run) - margin, far.max(far - run) + margin];
         let ceiling = curves.iter().map(|curve| curve.lowest_between(span)).fold(f64::INFINITY, f64::min);
         let apart = APART * y.length();
-        let low = y.at(0.0).min(ceiling - 2.0 * apart - (rise - fall));
-        Some(Fan { slopes, apex: [far - run, low + apart - fall], run, low })
+        let low = y.at(0.0).min(ceiling - (1.0 + UNDER) * apart - (rise - fall));
+        Some(Fan { slopes, apex: [far - run, low + UNDER * apart - fall], run, low })
     }
 
     /// The least ordinate that the rays need.

@@ -55,8 +55,11 @@ fn shapes(canvas: &Canvas) -> Result<String, EncodingError> {
             Shape::Window { corner: [left, top], canvas } => {
                 let [width, height] = canvas.size();
                 let inside = shapes(canvas)?;
+                // No two windows lie on one another. Nested `svg` elements would do as well, but not in every program.
+                let name = format!("w{left}-{top}");
                 format!(
-                    "<svg x=\"{left}\" y=\"{top}\" width=\"{width}\" height=\"{height}\">\n{inside}</svg>\n"
+                    "<clipPath id=\"{name}\"><path d=\"M0 0H{width}V{height}H0Z\"/></clipPath>\n\
+                     <g transform=\"translate({left} {top})\" clip-path=\"url(#{name})\">\n{inside}</g>\n"
                 )
             }
         };

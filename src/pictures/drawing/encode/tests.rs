@@ -14,7 +14,7 @@ fn sample() -> Drawing {
     canvas.text("λ<&", [45.0, 30.0], 12.0, INK, Anchor::Left);
     canvas.bitmap([50, 1], Bitmap { size: [3, 3], pixels: vec![[9, 9, 9, 128]; 9] });
     let mut window = Canvas::new([10, 10]);
-    window.line([[-50.0, 5.0], [50.0, 5.0]], 1.0, CURVES[2]);
+    window.line([[-50.0, 5.0], [50.0, 5.0]], 2.0, CURVES[2]);
     canvas.paste(window, [45, 8]);
     Drawing::new(canvas)
 }
@@ -34,10 +34,11 @@ fn lines_of_one_pen_are_one_path_and_neighbours_one_polyline() {
 #[test]
 fn an_svg_is_well_formed_and_holds_every_shape() {
     let svg = text(&sample());
-    for (tag, count) in [("<svg", 2), ("</svg>", 2), ("<image", 1), ("<path", 7)] {
+    for (tag, count) in [("<svg", 1), ("</svg>", 1), ("<g ", 1), ("</g>", 1), ("<image", 1), ("<path", 8)] {
         assert_eq!(svg.matches(tag).count(), count, "{tag} in {svg}");
     }
-    assert!(svg.contains("<svg x=\"45\" y=\"8\" width=\"10\" height=\"10\">"));
+    assert!(svg.contains("<clipPath id=\"w45-8\"><path d=\"M0 0H10V10H0Z\"/></clipPath>"));
+    assert!(svg.contains("<g transform=\"translate(45 8)\" clip-path=\"url(#w45-8)\">"));
     assert!(svg.contains("width=\"1\" height=\"1\" xlink:href=\"data:image/png;base64,iVBORw0KGgo"));
     // Letters are outlines: nothing of a text can break the file, and no font is asked for.
     assert!(!svg.contains("<text") && !svg.contains("λ") && !svg.contains("NaN"));

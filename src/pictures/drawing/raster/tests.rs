@@ -27,7 +27,7 @@ fn all() -> impl Iterator<Item = [usize; 2]> {
 
 /// Corners in a fixed but irregular order, some outside of the grid.
 fn samples(count: usize) -> impl Iterator<Item = [[f64; 2]; 3]> {
-    let coordinate = |seed: usize| (seed * 7919 % 2503) as f64 / 2503.0 * 260.0 - 30.0;
+    let coordinate = |seed: usize| (seed * seed * 7919 % 2503) as f64 / 2503.0 * 260.0 - 30.0;
     (0..count).map(move |k| [0, 1, 2].map(|c| [coordinate(6 * k + 2 * c), coordinate(6 * k + 2 * c + 1)]))
 }
 
