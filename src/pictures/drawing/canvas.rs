@@ -18,7 +18,6 @@ pub(crate) enum Anchor {
 }
 
 /// What lies on a canvas, in its pixels, y downwards.
-#[expect(clippy::large_enum_variant, reason = "a picture has few windows")]
 pub(crate) enum Shape {
     /// A straight line with round ends.
     Line { ends: [[f64; 2]; 2], width: f64, color: Rgb },
