@@ -122,7 +122,8 @@ mod tests {
     fn names_say_what_tells_curves_apart() {
         let ours = Curve { problem: "square", solver: "clarabel", origin: ORIGIN };
         let theirs = Curve { origin: "qpsolvers", ..ours };
-        assert_eq!(names(&[ours, theirs]), ["clarabel", "clarabel (qpsolvers)"]);
+        assert_eq!(names(&[ours, theirs]), ["clarabel", "clarabel"]);
+        assert_eq!([ours, theirs].each_ref().map(group), ["membranes", "qpsolvers"]);
         let other = Curve { problem: "plate", ..ours };
         assert_eq!(names(&[ours, other]), ["clarabel, square", "clarabel, plate"]);
     }
