@@ -76,31 +76,34 @@ impl Layer {
             }
             let gaps = corners.map(|v| scene.levels(v)[0] - scene.levels(v)[1]);
             let nearnesses = corners.map(|v| projected[v].1);
+            let shades = corners.map(|v| f64::from(shades[v]));
+            let contacts = corners.map(|v| scene.in_contact(v));
+            let across = [0, 1].map(|k| places.map(|place| place[k]));
             let steepness = [0, 1].map(|k| {
                 let slope = |axis: usize| (0..3).map(|i| gradients[i][axis] * places[i][k]).sum::<f64>();
-                let [across, down] = [slope(0), slope(1)];
-                (across * across + down * down).sqrt()
+                let [right, down] = [slope(0), slope(1)];
+                (right * right + down * down).sqrt()
             });
             let size = self.size;
             raster::triangle(flat, size, |column, row, weights| {
-                let blend = |values: [f64; 3]| (0..3).map(|i| weights[i] * values[i]).sum::<f64>();
+                let [a, b, c] = weights;
+                let blend = |[x, y, z]: [f64; 3]| a * x + b * y + c * z;
                 let nearness = blend(nearnesses) as f32;
                 let texel = &mut self.texels[row * size[0] + column];
                 if nearness <= texel.nearness {
                     return;
                 }
-                let at = [0, 1].map(|k| blend(places.map(|place| place[k])));
+                let at = [blend(across[0]), blend(across[1])];
                 if at[1] < style.from {
                     return;
                 }
-                let gap = blend(gaps);
-                let contact = scene.in_contact(corners[raster::nearest_corner(weights)])
-                    && (style.membrane == 1 || gap < TOUCHING);
+                let contact = contacts[raster::nearest_corner(weights)]
+                    && (style.membrane == 1 || blend(gaps) < TOUCHING);
                 let base = if contact { CONTACT } else { style.color };
-                let shade = blend(corners.map(|v| f64::from(shades[v])));
-                let line = (0..2).map(|k| grid_line(at[k], spacing[k], steepness[k])).fold(0.0, f64::max);
+                let shade = blend(shades);
+                let [one, other] = [0, 1].map(|k| grid_line(at[k], spacing[k], steepness[k]));
                 let kind = if contact { Kind::Contact } else { Kind::Membrane };
-                *texel = Texel { nearness, color: lit(base, shade, line, contact), kind };
+                *texel = Texel { nearness, color: lit(base, shade, one.max(other), contact), kind };
             });
         }
     }
