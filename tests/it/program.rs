@@ -327,7 +327,7 @@ fn export_writes_each_format() {
         ("npz", &["problem.npz"], b"PK"),
         (
             "mtx",
-            &["problem_A.mtx", "problem_P.mtx", "problem_b.mtx", "problem_q.mtx"],
+            &["problem_A.mtx", "problem_P.mtx", "problem_b.mtx", "problem_c.mtx", "problem_q.mtx"],
             b"%%MatrixMarket matrix ",
         ),
     ];
