@@ -72,6 +72,7 @@ pub fn render_rates(picture: &RatesPicture) -> Result<Drawing, RatesPictureError
     let panel = Panel {
         title: "",
         names: picture.series.iter().map(|series| series.name.to_owned()).collect(),
+        other_names: &[],
         slopes: curves.iter().map(slope).collect(),
         curves: &curves,
         others: &[],

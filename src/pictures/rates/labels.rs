@@ -32,10 +32,10 @@ pub(super) struct Labels {
 }
 
 impl Labels {
-    /// The labels, against the right one of these edges.
+    /// The labels, against the right one of these edges, with room for all names of the picture: its plots are of one width.
     pub(super) fn new(
         canvas: &Canvas,
-        names: &[String],
+        [names, all_names]: [&[String]; 2],
         heading: &str,
         slopes: &[String],
         [left, right]: [f64; 2],
@@ -43,7 +43,9 @@ impl Labels {
         let longest = LONGEST * (right - left);
         let names: Vec<String> = names.iter().map(|name| shortened(canvas, name, longest)).collect();
         let widest = |texts: &[String]| texts.iter().map(|t| canvas.width(t, NORMAL)).fold(0.0, f64::max);
-        let columns = widest(&names) + GAP + widest(slopes).max(canvas.width(heading, SMALL));
+        let all_names: Vec<String> = all_names.iter().map(|name| shortened(canvas, name, longest)).collect();
+        let columns =
+            widest(&names).max(widest(&all_names)) + GAP + widest(slopes).max(canvas.width(heading, SMALL));
         let right = right - GAP;
         let left = right - columns - NAME - LEADER;
         Labels { names, slopes: slopes.to_vec(), heading: heading.to_owned(), left, right }

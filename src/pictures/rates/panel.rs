@@ -25,6 +25,8 @@ pub(super) struct Panel<'a> {
     /// What stands over it, apart from the heading of the picture.
     pub(super) title: &'a str,
     pub(super) names: Vec<String>,
+    /// The names in other panels.
+    pub(super) other_names: &'a [String],
     /// The slope of each curve.
     pub(super) slopes: Vec<String>,
     pub(super) curves: &'a [Curve],
@@ -51,7 +53,8 @@ impl Panel<'_> {
     /// Draws the panel into a room of the canvas.
     pub(super) fn draw(&self, canvas: &mut Canvas, room: Frame) {
         let edges = [room.left, room.right()];
-        let labels = Labels::new(canvas, &self.names, self.slope_name, &self.slopes, edges);
+        let labels =
+            Labels::new(canvas, [&self.names, self.other_names], self.slope_name, &self.slopes, edges);
         let (plot, fan) = self.place(room, labels.left());
         canvas.text(self.title, [plot.frame.left, plot.frame.top - 34.0], NORMAL, INK, Anchor::Left);
         plot.draw(canvas, self.axis_names);

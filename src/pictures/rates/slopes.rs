@@ -12,6 +12,8 @@ const WIDTH: f64 = 0.2;
 /// Their greatest height, and their distance from the curves and the corner, as parts of the plot.
 const HEIGHT: f64 = 0.35;
 const APART: f64 = 0.05;
+/// Their distance from the edge beside them, where their slopes stand between, in distances from the curves.
+const BESIDE: f64 = 2.6;
 /// Their distance from the lower edge, where "slope" stands between, in distances from the curves.
 const UNDER: f64 = 1.8;
 
@@ -37,7 +39,7 @@ impl Fan {
         }
         let width = (WIDTH * x.length()).min(HEIGHT * y.length() / steepest);
         let side = if slopes.iter().sum::<f64>() < 0.0 { -1.0 } else { 1.0 };
-        let far = if side > 0.0 { x.at(1.0 - 1.6 * APART) } else { x.at(1.6 * APART) };
+        let far = if side > 0.0 { x.at(1.0 - BESIDE * APART) } else { x.at(BESIDE * APART) };
         let run = side * width;
         let rises = slopes.iter().map(|slope| slope * run).chain([0.0]);
         let (fall, rise) = rises.fold((0.0, 0.0), |(low, high): (f64, f64), r| (low.min(r), high.max(r)));

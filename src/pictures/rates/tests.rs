@@ -41,6 +41,7 @@ fn plot(values: &[&[f64]], slopes: &[f64], right: f64) -> (Vec<Curve>, Coordinat
     let panel = Panel {
         title: "",
         names: Vec::new(),
+        other_names: &[],
         slopes: Vec::new(),
         curves: &curves,
         others: &[],
@@ -71,7 +72,7 @@ fn markers_lie_at_the_logarithms_of_the_values() {
     let values = power(3.0, 1.5);
     let labels = labels::Labels::new(
         &Canvas::new(SIZE),
-        &["error".to_owned()],
+        [&["error".to_owned()], &[]],
         "last slope",
         &["1.50".to_owned()],
         [0.0, SIZE[0] as f64],

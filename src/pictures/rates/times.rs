@@ -16,8 +16,8 @@ const IN_ONE: usize = 7;
 const IN_PANEL: usize = 5;
 /// Panels stand side by side, this many.
 const COLUMNS: usize = 2;
-/// The height of a panel in pixels.
-const PANEL: usize = 760;
+/// Width and height of a panel in pixels.
+const PANEL: [usize; 2] = [1100, 760];
 
 /// Times of several solvers, to be drawn.
 #[derive(Clone, Copy, Debug)]
@@ -51,6 +51,7 @@ pub fn render_times(picture: &TimesPicture) -> Drawing {
     let panel = |title, names, slopes: &[Curve], compared| Panel {
         title,
         names,
+        other_names: &[],
         slopes: slopes.iter().map(fitted).collect(),
         curves: &[],
         others: &[],
@@ -72,18 +73,24 @@ pub fn render_times(picture: &TimesPicture) -> Drawing {
         Panel { curves: &all, ..panel("", names, &all, picture.slopes) }.draw_alone(&mut canvas);
         return Drawing::new(canvas);
     }
-    let mut canvas = Canvas::new([SIZE[0], 40 + PANEL * groups.len().div_ceil(COLUMNS)]);
+    let mut canvas = Canvas::new([COLUMNS * PANEL[0], 40 + PANEL[1] * groups.len().div_ceil(COLUMNS)]);
     heading(&mut canvas, picture.title);
-    let width = SIZE[0] as f64 / COLUMNS as f64;
+    let [width, height] = PANEL.map(|length| length as f64);
+    let every: Vec<String> = picture.curves.iter().map(|times| times.name.to_owned()).collect();
     for (k, group) in groups.iter().enumerate() {
         let names = group.times.iter().map(|times| times.name.to_owned()).collect();
         let own: Vec<Curve> = curves(&group.times);
         // The slopes to compare with stand once, for all panels have the same scale.
         let compared = if k == 0 { picture.slopes } else { &[] };
-        let [left, top] = [(k % COLUMNS) as f64 * width, 40.0 + (k / COLUMNS * PANEL) as f64];
-        let room = Frame { left, top, width, height: PANEL as f64 };
-        Panel { curves: &own, others: &all, ..panel(&group.name, names, &own, compared) }
-            .draw(&mut canvas, room);
+        let [left, top] = [(k % COLUMNS) as f64 * width, 40.0 + (k / COLUMNS) as f64 * height];
+        let room = Frame { left, top, width, height };
+        Panel {
+            curves: &own,
+            others: &all,
+            other_names: &every,
+            ..panel(&group.name, names, &own, compared)
+        }
+        .draw(&mut canvas, room);
     }
     Drawing::new(canvas)
 }

@@ -1,7 +1,7 @@
 //! Pixels: everything is painted on a fine grid, and averaged down.
 
 use crate::parallel::prelude::*;
-use png::{BitDepth, ColorType, Compression, Encoder, EncodingError};
+use png::{BitDepth, ColorType, Encoder, EncodingError};
 
 use crate::pictures::drawing::canvas::{Bitmap, Canvas, FINE, Shape};
 use crate::pictures::drawing::color::{PAPER, Rgb, mix};
@@ -24,7 +24,6 @@ fn compressed(size: [usize; 2], color: ColorType, data: &[u8]) -> Result<Vec<u8>
     let mut encoder = Encoder::new(&mut bytes, size[0] as u32, size[1] as u32);
     encoder.set_color(color);
     encoder.set_depth(BitDepth::Eight);
-    encoder.set_compression(Compression::Fast);
     let mut writer = encoder.write_header()?;
     writer.write_image_data(data)?;
     writer.finish()?;
