@@ -14,10 +14,11 @@ use crate::study::Tolerance;
 const OUTPUT: &str = "out";
 
 /// What `--backend` may be in this build.
-const SOLVERS: &str = if cfg!(feature = "osqp") {
-    "Solver: auto, multigrid, active-set, clarabel, osqp"
-} else {
-    "Solver: auto, multigrid, active-set, clarabel"
+const SOLVERS: &str = match (cfg!(feature = "clarabel"), cfg!(feature = "osqp")) {
+    (true, true) => "Solver: auto, multigrid, active-set, clarabel, osqp",
+    (true, false) => "Solver: auto, multigrid, active-set, clarabel",
+    (false, true) => "Solver: auto, multigrid, active-set, osqp",
+    (false, false) => "Solver: auto, multigrid, active-set",
 };
 
 #[derive(Debug, Parser)]

@@ -62,7 +62,11 @@ impl BackendName {
 
     /// Whether this build contains it.
     pub fn is_built(self) -> bool {
-        self != Self::Osqp || cfg!(feature = "osqp")
+        match self {
+            Self::Auto | Self::Multigrid | Self::ActiveSet => true,
+            Self::Clarabel => cfg!(feature = "clarabel"),
+            Self::Osqp => cfg!(feature = "osqp"),
+        }
     }
 }
 

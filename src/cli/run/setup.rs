@@ -15,8 +15,9 @@ use crate::discretization::Discretization;
 use crate::formats::gmsh::{PhysicalGroup, parse};
 use crate::mesh::{GmshMesh, MAX_VERTICES, MeshFamily, ReadError, estimated_vertices, generate, gmsh_nodes};
 use crate::output::Seconds;
-use crate::qp::Clarabel;
-use crate::solver::{ActiveSet, Auto, ContactSolver, Multigrid, QpSolver, SolverOptions};
+#[cfg(any(feature = "clarabel", feature = "osqp"))]
+use crate::solver::QpSolver;
+use crate::solver::{ActiveSet, Auto, ContactSolver, Multigrid, SolverOptions};
 use crate::text::excerpt;
 
 /// The case and its meshes.
@@ -196,14 +197,15 @@ fn cannot_read(case: &str, mesh: &Path, error: &ReadError) -> Failure {
 /// The solver of this name.
 pub(crate) fn solver(name: BackendName) -> Box<dyn ContactSolver> {
     match name {
-        BackendName::Clarabel => Box::new(QpSolver::new(Clarabel)),
         BackendName::ActiveSet => Box::new(ActiveSet),
         BackendName::Multigrid => Box::new(Multigrid),
         BackendName::Auto => Box::new(Auto),
+        #[cfg(feature = "clarabel")]
+        BackendName::Clarabel => Box::new(QpSolver::new(crate::qp::Clarabel)),
         #[cfg(feature = "osqp")]
         BackendName::Osqp => Box::new(QpSolver::new(crate::qp::Osqp)),
-        #[cfg(not(feature = "osqp"))]
-        BackendName::Osqp => unreachable!("the name is refused where it is parsed"),
+        #[allow(unreachable_patterns, reason = "with both features there is no other")]
+        _ => unreachable!("the name is refused where it is parsed"),
     }
 }
 
