@@ -61,6 +61,8 @@ pub(crate) fn run(arguments: &AdaptArguments, watch: &Watch) -> Result<(), Failu
     }
     setup.check_memory(setup.case.solver.backend)?;
     check_first_mesh(&setup, arguments.max_vertices)?;
+    // Nobody may find a folder of which the run says that nothing was written.
+    clock.check(too_early(&arguments.case.path))?;
     let folder = claim(arguments, &setup, watch)?;
     let kept = Levels { folder: &folder, table: LEVELS, picture: HISTORY };
     let mut levels: Vec<AdaptiveLevel> = kept.so_far();

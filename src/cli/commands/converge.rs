@@ -43,6 +43,8 @@ pub(crate) fn run(arguments: &ConvergeArguments, watch: &Watch) -> Result<(), Fa
     let backend = setup.case.solver.backend;
     setup.check_memory(backend)?;
     check_refinements(&setup.name, setup.family.mesh().points().len() as f64, arguments.levels - 1)?;
+    // Nobody may find a folder of which the run says that nothing was written.
+    clock.check(too_early(&arguments.case.path))?;
     let claim = Claim {
         case: &setup.id,
         part: Part::Converge,

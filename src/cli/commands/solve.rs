@@ -39,6 +39,8 @@ pub(crate) fn run(arguments: &SolveArguments, watch: &Watch) -> Result<(), Failu
     override_settings(&mut setup, arguments, &clock);
     setup.check_memory(setup.case.solver.backend)?;
     let (d, seconds) = setup.discretize(&progress)?;
+    // Nobody may find a folder of which the run says that nothing was written.
+    clock.check(too_early(&arguments.case.path))?;
     let claim = Claim {
         case: &setup.id,
         part: Part::Solution,

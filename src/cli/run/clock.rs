@@ -39,6 +39,11 @@ impl Clock {
         self.limit.is_none_or(|limit| self.start.elapsed().as_secs_f64() + seconds <= limit.seconds())
     }
 
+    /// Ends the run by `give_up` when its time is over: also where the watch has not come to it yet.
+    pub(crate) fn check(&self, give_up: impl Fn() -> Failure) -> Result<(), Failure> {
+        if self.allows(0.0) { Ok(()) } else { Err(give_up()) }
+    }
+
     /// What a solver may take that has a limit of its own, or none.
     pub(crate) fn of_solver(&self, own: Option<TimeLimit>) -> Option<TimeLimit> {
         [own, self.left()].into_iter().flatten().min()
