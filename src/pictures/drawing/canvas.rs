@@ -4,7 +4,7 @@ use super::color::Rgb;
 use super::font::{CAPITALS, Font};
 
 /// Fine pixels per pixel and direction: smooth edges without any blending of lines.
-pub(crate) const FINE: usize = 3;
+pub(crate) const FINE: usize = 2;
 
 /// Which part of a text lies at the given point.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -73,5 +73,6 @@ pub(crate) fn force(place: f64) -> Rgb {
 
 /// `share` of `over` and the rest of `under`.
 pub(crate) fn mix(under: Rgb, over: Rgb, share: f64) -> Rgb {
-    std::array::from_fn(|k| (f64::from(under[k]) * (1.0 - share) + f64::from(over[k]) * share + 0.5) as u8)
+    let channel = |k: usize| (f64::from(under[k]) * (1.0 - share) + f64::from(over[k]) * share + 0.5) as u8;
+    [channel(0), channel(1), channel(2)]
 }

@@ -36,6 +36,16 @@ impl Frame {
         [self.left + x * self.width, self.bottom() - y * self.height]
     }
 
+    /// The frame with a margin around it.
+    pub(crate) fn grown(&self, margin: f64) -> Frame {
+        Frame {
+            left: self.left - margin,
+            top: self.top - margin,
+            width: self.width + 2.0 * margin,
+            height: self.height + 2.0 * margin,
+        }
+    }
+
     /// The border.
     pub(crate) fn outline(&self, canvas: &mut Canvas) {
         let [left, top, right, bottom] = [self.left, self.top, self.right(), self.bottom()];

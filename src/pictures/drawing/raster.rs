@@ -28,10 +28,11 @@ pub(crate) fn triangle(
     for line in pixel_range(bounds[across], size[across]) {
         let middle = line as f64 + 0.5;
         // On the line each weight is linear, and its zero an end of the span.
-        let starts = [0, 1, 2].map(|k| {
+        let start = |k: usize| {
             let from = corners[(k + 1) % 3];
             gradients[k][across] * (middle - from[across]) - slopes[k] * from[along]
-        });
+        };
+        let starts = [start(0), start(1), start(2)];
         let mut span = bounds[along];
         for k in 0..3 {
             let zero = (ON_EDGE - starts[k]) * lengths[k];
@@ -42,9 +43,10 @@ pub(crate) fn triangle(
             }
         }
         for pixel in pixel_range(span, size[along]) {
-            let weights = [0, 1, 2].map(|k| starts[k] + slopes[k] * (pixel as f64 + 0.5));
+            let weight = |k: usize| starts[k] + slopes[k] * (pixel as f64 + 0.5);
+            let weights = [weight(0), weight(1), weight(2)];
             visited();
-            if weights.iter().all(|&weight| weight >= ON_EDGE) {
+            if weights[0] >= ON_EDGE && weights[1] >= ON_EDGE && weights[2] >= ON_EDGE {
                 let [column, row] = in_order(along, [pixel, line]);
                 paint(column, row, weights);
             }

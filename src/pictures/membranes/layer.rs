@@ -57,6 +57,11 @@ impl Layer {
         Layer { frame, size, texels: vec![empty; size[0] * size[1]] }
     }
 
+    /// The upper left corner of the frame.
+    pub(super) fn corner(&self) -> [usize; 2] {
+        [self.frame.left, self.frame.top].map(|x| x as usize)
+    }
+
     /// Paints a membrane, shaded, with grid lines and the contact region.
     pub(super) fn surface(&mut self, scene: &Scene, view: &View, style: &Style) {
         let shades = brightness(scene, view, style.membrane);
@@ -101,9 +106,9 @@ impl Layer {
                     && (style.membrane == 1 || blend(gaps) < TOUCHING);
                 let base = if contact { CONTACT } else { style.color };
                 let shade = blend(shades);
-                let [one, other] = [0, 1].map(|k| grid_line(at[k], spacing[k], steepness[k]));
+                let grid = |k: usize| grid_line(at[k], spacing[k], steepness[k]);
                 let kind = if contact { Kind::Contact } else { Kind::Membrane };
-                *texel = Texel { nearness, color: lit(base, shade, one.max(other), contact), kind };
+                *texel = Texel { nearness, color: lit(base, shade, grid(0).max(grid(1)), contact), kind };
             });
         }
     }
@@ -145,6 +150,8 @@ impl Layer {
     /// The point of the canvas nearest to `label` that shows `kind` and, if possible, has it all around.
     pub(super) fn anchor(&self, kind: Kind, label: [f64; 2], hidden_by: Option<&Layer>) -> Option<[f64; 2]> {
         const CLEARANCES: [usize; 4] = [16, 8, 3, 0];
+        /// Every second pixel is looked at, in both directions.
+        const STEP: usize = 2 * FINE;
         let visible = |column: usize, row: usize| {
             let pixel = row * self.size[0] + column;
             self.texels[pixel].kind == kind
@@ -165,8 +172,8 @@ impl Layer {
                             .all(|[dx, dy]| visible(column + dx - reach, row + dy - reach))
                 };
                 let columns = reach..self.size[0].saturating_sub(reach);
-                let rows = (reach..self.size[1].saturating_sub(reach)).step_by(FINE);
-                rows.flat_map(|row| columns.clone().step_by(FINE).map(move |column| [column, row]))
+                let rows = (reach..self.size[1].saturating_sub(reach)).step_by(STEP);
+                rows.flat_map(|row| columns.clone().step_by(STEP).map(move |column| [column, row]))
                     .filter(|&[column, row]| around(column, row))
                     .min_by_key(distance)
             })

@@ -14,6 +14,9 @@ use crate::pictures::drawing::frame::{Frame, NORMAL, SMALL, fitting_ticks};
 /// Beyond this place of the left edge of the floor its labels would run into those of the heights.
 const FAR_END: f64 = 0.93;
 
+/// What lines may reach beyond the box, in pixels.
+const MARGIN: f64 = 4.0;
+
 /// How much membrane 1 covers what lies behind it.
 const VEIL: f64 = 0.72;
 
@@ -30,10 +33,10 @@ pub(super) fn draw(canvas: &mut Canvas, scene: &Scene, section: &Section, room: 
     let cut_at = view.in_box(cut.point(0.5), 0.0)[1];
     let lower_style = Style { membrane: 1, color: LOWER, line: LOWER_LINE, from: f64::NEG_INFINITY };
     let upper_style = Style { membrane: 0, color: UPPER, line: UPPER_LINE, from: cut_at };
-    let layer = |style: &Style| membrane(scene, section, &view, style, room);
+    let layer = |style: &Style| membrane(scene, section, &view, style, inner.grown(MARGIN));
     let (lower, upper) = crate::parallel::join(|| layer(&lower_style), || layer(&upper_style));
     floor(canvas, scene, cut, &view);
-    canvas.bitmap([room.left, room.top].map(|x| x as usize), upper.over(&lower, VEIL));
+    canvas.bitmap(lower.corner(), upper.over(&lower, VEIL));
     names(canvas, &lower, &upper, room);
     axes(canvas, scene, cut, &view);
     let above = [room.left + 20.0, room.top + 0.06 * room.height];
@@ -41,8 +44,8 @@ pub(super) fn draw(canvas: &mut Canvas, scene: &Scene, section: &Section, room: 
 }
 
 /// A membrane with its boundary and its line along the section.
-fn membrane(scene: &Scene, section: &Section, view: &View, style: &Style, room: Frame) -> Layer {
-    let mut layer = Layer::new(room);
+fn membrane(scene: &Scene, section: &Section, view: &View, style: &Style, frame: Frame) -> Layer {
+    let mut layer = Layer::new(frame);
     layer.surface(scene, view, style);
     rim(&mut layer, scene, view, style);
     profile(&mut layer, scene, section, view, style);

@@ -1,5 +1,5 @@
 use super::*;
-use crate::pictures::drawing::canvas::{Anchor, Bitmap};
+use crate::pictures::drawing::canvas::{Anchor, Bitmap, FINE};
 use crate::pictures::drawing::color::{CURVES, INK};
 
 /// One of each shape.
@@ -12,7 +12,7 @@ fn sample() -> Drawing {
     canvas.triangle([[20.0, 20.0], [30.0, 20.0], [20.0, 30.0]], CURVES[1]);
     canvas.triangle([[30.0, 20.0], [40.0, 20.0], [30.0, 30.0]], CURVES[1]);
     canvas.text("λ<&", [45.0, 30.0], 12.0, INK, Anchor::Left);
-    canvas.bitmap([50, 1], Bitmap { size: [3, 3], pixels: vec![[9, 9, 9, 128]; 9] });
+    canvas.bitmap([50, 1], Bitmap { size: [FINE; 2], pixels: vec![[9, 9, 9, 128]; FINE * FINE] });
     let mut window = Canvas::new([10, 10]);
     window.line([[-50.0, 5.0], [50.0, 5.0]], 2.0, CURVES[2]);
     canvas.paste(window, [45, 8]);
