@@ -8,7 +8,7 @@ mod spaces;
 #[cfg(test)]
 mod tests;
 
-pub use bound::{BoundParts, ErrorBound, LoadWarning};
+pub use bound::{BoundParts, ErrorBound, ErrorBounds, LoadWarning};
 pub use lift::DualNorm;
 pub use norms::{ContactAreas, ErrorNorms, energy_error};
 pub use residual::residual_indicators;

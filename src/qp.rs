@@ -19,6 +19,7 @@ mod export;
 #[cfg(feature = "files")]
 mod import;
 mod kkt;
+mod limits;
 #[cfg(feature = "osqp")]
 mod osqp;
 mod problem;
@@ -36,5 +37,7 @@ pub use export::{QpPart, write_matrix_market, write_npz, write_qps};
 #[cfg(feature = "files")]
 pub use import::{AnswerError, Shape, read_answer};
 pub use kkt::KktResiduals;
+pub use limits::Interrupt;
+pub(crate) use limits::Limits;
 pub use problem::{QpError, QpProblem};
 pub use time_limit::{TimeLimit, TimeLimitError};

@@ -67,6 +67,7 @@ impl Rejected {
     pub fn remedy(&self) -> &'static str {
         match self.statistics.status {
             _ if self.reason == Reason::NoResult => "allow more time, or choose another solver",
+            Status::Interrupted => "it was asked to stop: solve again",
             Status::Stalled => {
                 "choose another solver (active-set needs no good triangles), or a larger tolerance"
             }

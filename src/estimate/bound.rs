@@ -30,7 +30,6 @@ use crate::action::{Action, ContactSolution, extend_to_boundary};
 use crate::discretization::Discretization;
 use crate::flux::WedgeFluxes;
 use crate::geometry::friedrichs;
-use crate::mesh::VertexTriangles;
 use crate::problem::{ContactProblem, Domain};
 
 /// A guaranteed bound of the energy error `|||u - u_h||| = (sum_i mu_i |u_i - u_ih|_{H1}^2)^(1/2)`.
@@ -101,52 +100,7 @@ impl ErrorBound {
         d: &Discretization,
         displacement: &[Vec<f64>; 2],
     ) -> Result<Self, MeasureError> {
-        MeasureError::check(d, displacement)?;
-        let seen = Action::recover(d, displacement);
-        let action = likely_action(d, displacement, &seen);
-        Self::with_action(problem, domain, d, displacement, &seen, action)
-    }
-
-    /// Bounds the error of a certified solution, with its own action: what was cut off of the action that the displacements
-    /// have by (4.5) is in the algebraic part.
-    ///
-    /// # Errors
-    /// [`MeasureError::OtherMesh`] when it is the solution on another mesh.
-    pub fn of_solution(
-        problem: &ContactProblem,
-        domain: Option<&Domain>,
-        d: &Discretization,
-        solution: &ContactSolution,
-    ) -> Result<Self, MeasureError> {
-        MeasureError::check(d, solution.displacement())?;
-        let seen = Action::recover(d, solution.displacement());
-        let action = solution.lambda().to_vec();
-        Self::with_action(problem, domain, d, solution.displacement(), &seen, action)
-    }
-
-    /// With any `action >= 0` over vertices, zero on the boundary, where it is still to be continued to.
-    fn with_action(
-        problem: &ContactProblem,
-        domain: Option<&Domain>,
-        d: &Discretization,
-        displacement: &[Vec<f64>; 2],
-        seen: &[Action],
-        mut action: Vec<f64>,
-    ) -> Result<Self, MeasureError> {
-        let rest_sq = rest_sq(d, seen, &action);
-        extend_to_boundary(d, displacement, &mut action);
-        let around = VertexTriangles::new(d.mesh().points().len(), d.mesh().triangles());
-        let cells = Cells {
-            d,
-            displacement,
-            lambda: &action,
-            fluxes: WedgeFluxes::new(d, &around, displacement, &action),
-            trace: Trace::new(problem, domain, d, &around),
-        };
-        let (sums, indicators) = cells.sum()?;
-        let friedrichs = friedrichs(cells.sides());
-        drop(cells);
-        Ok(Self::from_sums(d, &sums, friedrichs, rest_sq, action, indicators))
+        ErrorBounds::new(problem, domain, d).of_displacement(displacement)
     }
 
     fn from_sums(
@@ -190,6 +144,59 @@ impl ErrorBound {
         }
         let least = self.energy_norm - self.total;
         (least > 0.0).then(|| self.total / least)
+    }
+}
+
+/// The bounds of several errors on one discretization: what depends on the data alone is found once.
+pub struct ErrorBounds<'a> {
+    d: &'a Discretization,
+    trace: Trace<'a>,
+}
+
+impl<'a> ErrorBounds<'a> {
+    /// For pairs on `d`, the discretization of `problem`; `domain` as in [`ErrorBound::new`].
+    pub fn new(problem: &'a ContactProblem, domain: Option<&Domain>, d: &'a Discretization) -> Self {
+        Self { d, trace: Trace::new(problem, domain, d) }
+    }
+
+    /// [`ErrorBound::new`].
+    ///
+    /// # Errors
+    /// Likewise.
+    pub fn of_displacement(&self, displacement: &[Vec<f64>; 2]) -> Result<ErrorBound, MeasureError> {
+        MeasureError::check(self.d, displacement)?;
+        let seen = Action::recover(self.d, displacement);
+        let action = likely_action(self.d, displacement, &seen);
+        self.with_action(displacement, &seen, action)
+    }
+
+    /// Bounds the error of a certified solution, with its own action: what was cut off of the action that the displacements
+    /// have by (4.5) is in the algebraic part.
+    ///
+    /// # Errors
+    /// [`MeasureError::OtherMesh`] when it is the solution on another mesh, and those of [`ErrorBound::new`].
+    pub fn of_solution(&self, solution: &ContactSolution) -> Result<ErrorBound, MeasureError> {
+        MeasureError::check(self.d, solution.displacement())?;
+        let seen = Action::recover(self.d, solution.displacement());
+        self.with_action(solution.displacement(), &seen, solution.lambda().to_vec())
+    }
+
+    /// With any `action >= 0` over vertices, zero on the boundary, where it is still to be continued to.
+    fn with_action(
+        &self,
+        displacement: &[Vec<f64>; 2],
+        seen: &[Action],
+        mut action: Vec<f64>,
+    ) -> Result<ErrorBound, MeasureError> {
+        let Self { d, trace } = self;
+        let rest_sq = rest_sq(d, seen, &action);
+        extend_to_boundary(d, displacement, &mut action);
+        let fluxes = WedgeFluxes::new(d, &trace.around, displacement, &action);
+        let cells = Cells { d, displacement, lambda: &action, fluxes, trace };
+        let (sums, indicators) = cells.sum()?;
+        let friedrichs = friedrichs(cells.sides());
+        drop(cells);
+        Ok(ErrorBound::from_sums(d, &sums, friedrichs, rest_sq, action, indicators))
     }
 }
 

@@ -6,13 +6,11 @@
 //! cut off at the obstacle and the energy has not fallen, it is damped by an exact line search. Once the contact set stays, the cycles solve the linear system
 //! of a step of the active set method.
 
-use std::time::Instant;
-
 use super::correction::CoarseLevels;
 use super::sweep::{Bounded, Found, Iterate};
 use crate::multigrid::cholesky::NotFactored;
 use crate::multigrid::hierarchy::Hierarchy;
-use crate::qp::Status;
+use crate::qp::{Limits, Status};
 
 /// The limit of cycles when none is given. Ten are enough on meshes of ordinary quality.
 pub(crate) const MAX_CYCLES: usize = 200;
@@ -39,14 +37,6 @@ pub(crate) struct HalfProblem {
     pub(crate) weight: Vec<f64>,
     /// A guess to start from in place of nested iteration.
     pub(crate) start: Option<Vec<f64>>,
-}
-
-/// When to stop although the tolerance is not reached.
-#[derive(Clone, Copy)]
-pub(crate) struct Limits {
-    /// Cycles on the finest level.
-    pub(crate) cycles: usize,
-    pub(crate) deadline: Option<Instant>,
 }
 
 /// The last iterate, over the rows of the finest level.
@@ -82,7 +72,7 @@ pub(crate) fn solve(
             let mut x = vec![0.0; hierarchy.levels()[1].pattern.rows()];
             let coarser = heights.iter().enumerate().take(hierarchy.finest()).skip(1);
             for (l, height) in coarser {
-                let limits = Limits { cycles: COARSE_CYCLES, ..*limits };
+                let limits = limits.with_iterations(COARSE_CYCLES);
                 let found = Cycles::new(l, on_level(l), x, &mut coarse)?.run(&limits)?;
                 cycles.extend(found.cycles);
                 x = prolonged(hierarchy, l, found.x, height, lower);
@@ -157,16 +147,13 @@ impl<'c, 'h> Cycles<'c, 'h> {
             if found.violation <= tolerance && stays {
                 break Status::Solved;
             }
-            if cycles >= limits.cycles {
-                break Status::IterationLimit;
+            if let Some(limit) = limits.reached(cycles) {
+                break limit;
             }
             if cycles >= PATIENCE
                 && is_hopeless(history[cycles - PATIENCE].violation, found.violation, tolerance)
             {
                 break Status::Stalled;
-            }
-            if limits.deadline.is_some_and(|deadline| Instant::now() > deadline) {
-                break Status::TimeLimit;
             }
             self.coarse.solve(self.finest, &self.frozen, &self.changed)?;
             self.changed.clear();

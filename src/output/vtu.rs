@@ -39,6 +39,7 @@ mod tests {
     use super::*;
     use crate::action::certify;
     use crate::discretization::Discretization;
+    use crate::estimate::ErrorBounds;
     use crate::formats::vtk::samples::{floats, read_array};
     use crate::mesh::{Pattern, VertexKind, rectangle};
     use crate::pictures::membranes::Picture;
@@ -67,7 +68,7 @@ mod tests {
             for polish in [true, false] {
                 let options = SolverOptions { polish, ..SolverOptions::default() };
                 let solution = certify(&d, solver.solve(&d, &options).unwrap(), 1e-8).unwrap();
-                let bound = ErrorBound::of_solution(&problem, None, &d, &solution).unwrap();
+                let bound = ErrorBounds::new(&problem, None, &d).of_solution(&solution).unwrap();
                 let summary = Summary::new("", &d, 1e-8, Ok(&solution), Seconds::default(), Some(&bound));
                 let mut file = Vec::new();
                 write_vtu(&mesh, &solution, &bound, &mut file).unwrap();

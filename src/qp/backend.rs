@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use super::limits::Interrupt;
 use super::problem::QpProblem;
 use super::time_limit::TimeLimit;
 
@@ -29,13 +30,15 @@ pub struct QpOptions {
     pub max_iterations: Option<usize>,
     /// When to stop at the latest; `None`: no limit.
     pub time_limit: Option<TimeLimit>,
+    /// What asks it to stop; `None`: nothing does.
+    pub interrupt: Option<Interrupt>,
     /// A guess `(x, y)`, for backends that can use one.
     pub warm_start: Option<(Vec<f64>, Vec<f64>)>,
 }
 
 impl Default for QpOptions {
     fn default() -> Self {
-        Self { tolerance: 1e-8, max_iterations: None, time_limit: None, warm_start: None }
+        Self { tolerance: 1e-8, max_iterations: None, time_limit: None, interrupt: None, warm_start: None }
     }
 }
 
@@ -69,6 +72,8 @@ pub enum Status {
     IterationLimit,
     /// It reached the limit of time.
     TimeLimit,
+    /// It was asked to stop.
+    Interrupted,
     /// It made no more progress.
     Stalled,
     /// It holds that no point satisfies the constraints.
@@ -89,6 +94,7 @@ impl Status {
             Self::Inaccurate => "inaccurate",
             Self::IterationLimit => "iteration_limit",
             Self::TimeLimit => "time_limit",
+            Self::Interrupted => "interrupted",
             Self::Stalled => "stalled",
             Self::Infeasible => "infeasible",
             Self::Unbounded => "unbounded",

@@ -1,10 +1,9 @@
 //! The interior-point solver Clarabel (Goulart, Chen, arXiv 2405.12762).
 
-use std::time::Instant;
-
 use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 use sprs::CsMat;
+use web_time::Instant;
 
 use super::{BackendError, QpBackend, QpOptions, QpProblem, QpSolution, Status, TimeLimit};
 
@@ -35,6 +34,9 @@ impl QpBackend for Clarabel {
         let cone = [SupportedConeT::NonnegativeConeT(b.len())];
         let mut solver = DefaultSolver::new(&p, qp.q(), &a, &b, &cone, settings(options, b.len()))
             .map_err(|error| BackendError { backend: self.name().into(), reason: error.to_string() })?;
+        if let Some(interrupt) = options.interrupt.clone() {
+            solver.set_termination_callback(move |_: &_| interrupt.is_wanted());
+        }
         let setup_seconds = start.elapsed().as_secs_f64();
         solver.solve();
         let solution = solver.solution;
@@ -83,7 +85,8 @@ fn status(status: SolverStatus) -> Status {
         SolverStatus::DualInfeasible | SolverStatus::AlmostDualInfeasible => Status::Unbounded,
         SolverStatus::MaxIterations => Status::IterationLimit,
         SolverStatus::MaxTime => Status::TimeLimit,
-        SolverStatus::InsufficientProgress | SolverStatus::CallbackTerminated => Status::Stalled,
+        SolverStatus::CallbackTerminated => Status::Interrupted,
+        SolverStatus::InsufficientProgress => Status::Stalled,
         SolverStatus::NumericalError | SolverStatus::Unsolved => Status::NumericalError,
     }
 }

@@ -1,15 +1,15 @@
 //! The operator-splitting solver OSQP (Stellato et al., Math. Prog. Comp. 12 (2020) 637).
 
-use std::time::Instant;
-
 use osqp::{CscMatrix, Problem, Settings, Solution, Status as OsqpStatus};
 use sprs::CsMat;
+use web_time::Instant;
 
 use super::{BackendError, QpBackend, QpOptions, QpProblem, QpSolution, Status, TimeLimit};
 
 /// OSQP: `minimise 1/2 x'P x + q'x subject to l <= A x <= u`, dual `<= 0` at an active lower bound: `y` is its negative.
 ///
-/// It takes a warm start, and polishes its answer by its own means when it can.
+/// It takes a warm start, and polishes its answer by its own means when it can. It does not hear an
+/// [`Interrupt`](super::Interrupt): its binding has no way in between two iterations.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Osqp;
 

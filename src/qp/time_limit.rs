@@ -1,8 +1,9 @@
 //! The time that a solve may take.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use thiserror::Error;
+use web_time::Instant;
 
 use crate::text::Number;
 

@@ -5,15 +5,15 @@ mod obstacle;
 #[cfg(test)]
 mod tests;
 
-pub(super) use obstacle::{Limits, Obstacle, guess};
+pub(super) use obstacle::{Obstacle, guess};
 
-use std::time::Instant;
+use web_time::Instant;
 
 use super::decoupled::Decoupled;
 use super::{Candidate, ContactSolver, SolverError, SolverOptions, Statistics};
 use crate::discretization::Discretization;
 use crate::multigrid::cholesky::NotFactored;
-use crate::qp::Status;
+use crate::qp::{Limits, Status};
 
 /// The limit of steps when none is given. A cold start needs about as many as there are layers of vertices between the
 /// free boundary and where the first guess puts it.
@@ -36,8 +36,7 @@ impl ContactSolver for ActiveSet {
     fn solve(&mut self, d: &Discretization, options: &SolverOptions) -> Result<Candidate, SolverError> {
         options.check()?;
         let start = Instant::now();
-        let limits =
-            Limits { steps: options.max_iterations.unwrap_or(MAX_STEPS), deadline: options.deadline(start) };
+        let limits = options.limits(MAX_STEPS, start);
         let (active, mut level_iterations) = match &options.warm_start {
             Some(start) if start.fits(d) => (guess(d, &start.displacement, &start.multiplier), Vec::new()),
             _ => nested::guess_from_coarser_levels(d, &limits)?,

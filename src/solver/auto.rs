@@ -1,6 +1,6 @@
 //! The choice between the built-in solvers.
 
-use std::time::Instant;
+use web_time::Instant;
 
 use super::multigrid::PreparedMultigrid;
 use super::{ActiveSet, Candidate, ContactSolver, Multigrid, PreparedSolver, SolverError, SolverOptions};

@@ -3,14 +3,14 @@
 #[cfg(test)]
 mod tests;
 
-use std::time::Instant;
+use web_time::Instant;
 
 use super::decoupled::Decoupled;
 use super::{
     Candidate, ContactSolver, PreparedSolver, SolverError, SolverOptions, StartingPoint, Statistics,
 };
 use crate::discretization::Discretization;
-use crate::multigrid::half::{HalfProblem, Limits, MAX_CYCLES, solve};
+use crate::multigrid::half::{HalfProblem, MAX_CYCLES, solve};
 use crate::multigrid::hierarchy::Hierarchy;
 use crate::qp::Status;
 
@@ -95,8 +95,7 @@ fn solve_on(
 ) -> Result<Candidate, SolverError> {
     let decoupled = Decoupled::new(d);
     let [gap, sum] = halves(hierarchy, &decoupled, d, options);
-    let limits =
-        Limits { cycles: options.max_iterations.unwrap_or(MAX_CYCLES), deadline: options.deadline(start) };
+    let limits = options.limits(MAX_CYCLES, start);
     let (gap, sum) =
         crate::parallel::join(|| solve(hierarchy, gap, &limits), || solve(hierarchy, sum, &limits));
     let (gap, sum) = (gap?, sum?);

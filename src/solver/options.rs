@@ -1,10 +1,10 @@
 //! What is asked of a solver.
 
-use std::time::Instant;
+use web_time::Instant;
 
 use super::candidate::StartingPoint;
 use super::error::SolverError;
-use crate::qp::TimeLimit;
+use crate::qp::{Interrupt, Limits, TimeLimit};
 
 /// What is asked of a solver.
 #[derive(Debug, Clone)]
@@ -16,6 +16,8 @@ pub struct SolverOptions {
     /// When to stop at the latest; `None`: no limit. Solvers look at the clock between their steps, of which a factorisation or
     /// the set-up of all levels is one.
     pub time_limit: Option<TimeLimit>,
+    /// What asks it to stop, between the same steps; `None`: nothing does.
+    pub interrupt: Option<Interrupt>,
     /// Whether to make the result exact by solving for its contact set.
     pub polish: bool,
     /// A guess on this mesh to start from, for solvers that can.
@@ -24,14 +26,22 @@ pub struct SolverOptions {
 
 impl Default for SolverOptions {
     fn default() -> Self {
-        Self { tolerance: 1e-8, max_iterations: None, time_limit: None, polish: true, warm_start: None }
+        Self {
+            tolerance: 1e-8,
+            max_iterations: None,
+            time_limit: None,
+            interrupt: None,
+            polish: true,
+            warm_start: None,
+        }
     }
 }
 
 impl SolverOptions {
-    /// When to stop a solve that has begun at `start`.
-    pub(crate) fn deadline(&self, start: Instant) -> Option<Instant> {
-        self.time_limit.and_then(|limit| limit.deadline(start))
+    /// When a solve that has begun at `start` stops; after `iterations`, where nothing else is asked for.
+    pub(crate) fn limits(&self, iterations: usize, start: Instant) -> Limits {
+        let iterations = self.max_iterations.unwrap_or(iterations);
+        Limits::new(iterations, self.time_limit, start, self.interrupt.clone())
     }
 
     pub(crate) fn check(&self) -> Result<(), SolverError> {

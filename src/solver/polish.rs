@@ -4,9 +4,10 @@
 //! `sqrt(t)`: the action is then wrong by percents. The answer still tells which vertices touch, and from that guess the
 //! active set method is exact after a few repairs.
 
-use std::time::Instant;
+use web_time::Instant;
 
-use super::active_set::{Limits, guess, settle};
+use super::SolverOptions;
+use super::active_set::{guess, settle};
 use super::candidate::{Candidate, unknowns};
 use super::statistics::PolishReport;
 use crate::discretization::Discretization;
@@ -17,20 +18,22 @@ use crate::qp::{KktResiduals, QpProblem, Status};
 const MAX_STEPS: usize = 100;
 
 /// Polishes the candidate and keeps the result if its KKT residuals are smaller. `None` when a linear system cannot be
-/// solved, or no time is left.
+/// solved, or the solve has to stop.
 pub(super) fn polish(
     d: &Discretization,
     qp: &QpProblem,
     candidate: &mut Candidate,
-    deadline: Option<Instant>,
+    options: &SolverOptions,
+    start: Instant,
 ) -> Option<PolishReport> {
-    if deadline.is_some_and(|deadline| Instant::now() > deadline) {
+    // The limit of iterations is the backend's.
+    let limits = options.limits(MAX_STEPS, start).with_iterations(MAX_STEPS);
+    if limits.reached(0).is_some() {
         return None;
     }
     let residual = |displacement: &[Vec<f64>; 2], multiplier: &[f64]| {
         KktResiduals::new(qp, &unknowns(d, displacement), multiplier).worst()
     };
-    let limits = Limits { steps: MAX_STEPS, deadline };
     let polished = settle(d, guess(d, &candidate.displacement, &candidate.multiplier), &limits).ok()?;
     let residual_before = residual(&candidate.displacement, &candidate.multiplier);
     let residual_after = residual(&polished.displacement, &polished.multiplier);

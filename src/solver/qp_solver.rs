@@ -1,6 +1,6 @@
 //! Any QP backend as a solver of the contact problem.
 
-use std::time::Instant;
+use web_time::Instant;
 
 use super::candidate::unknowns;
 use super::polish::polish;
@@ -41,7 +41,7 @@ impl ContactSolver for QpSolver {
         };
         let mut candidate = Candidate::from_answer(d, Answer { x: solution.x, y: solution.y }, statistics);
         if options.polish {
-            candidate.statistics.polish = polish(d, &qp, &mut candidate, options.deadline(start));
+            candidate.statistics.polish = polish(d, &qp, &mut candidate, options, start);
         }
         candidate.statistics.solve_seconds =
             start.elapsed().as_secs_f64() - candidate.statistics.setup_seconds;
@@ -57,6 +57,7 @@ fn qp_options(d: &Discretization, options: &SolverOptions, begin: Instant) -> Qp
         tolerance: options.tolerance,
         max_iterations: options.max_iterations,
         time_limit: options.time_limit.map(|limit| limit.left_since(begin).unwrap_or(TimeLimit::SHORTEST)),
+        interrupt: options.interrupt.clone(),
         warm_start,
     }
 }

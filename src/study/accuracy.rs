@@ -1,13 +1,13 @@
 //! A certified solution together with the bound of its error.
 
-use std::time::Instant;
+use web_time::Instant;
 
 use thiserror::Error;
 
 use super::prolongation::Fields;
 use crate::action::{ContactSolution, Rejected, certify};
 use crate::discretization::Discretization;
-use crate::estimate::{ErrorBound, MeasureError};
+use crate::estimate::{ErrorBound, ErrorBounds, MeasureError};
 use crate::problem::{ContactProblem, Domain};
 use crate::solver::{ContactSolver, SolverError, SolverOptions};
 
@@ -89,11 +89,12 @@ pub fn solve_bounded(
     tolerance: Tolerance,
 ) -> Result<Bounded, AccuracyError> {
     let mut solver = solver.prepare(d);
+    let bounds = ErrorBounds::new(problem, domain, d);
     let mut at = |tolerance: f64, options: &SolverOptions| {
         let candidate = solver.solve(&SolverOptions { tolerance, ..options.clone() })?;
         let solution = certify(d, candidate, tolerance)
             .map_err(|rejected| AccuracyError::Rejected(rejected, tolerance))?;
-        Ok(Bounded::new(problem, domain, d, solution, tolerance)?)
+        Ok(Bounded::new(&bounds, solution, tolerance)?)
     };
     let Tolerance::Fixed(tolerance) = tolerance else {
         let start = Instant::now();
@@ -120,14 +121,12 @@ pub fn solve_bounded(
 impl Bounded {
     /// Bounds the error of a solution that is certified within `tolerance`.
     pub(super) fn new(
-        problem: &ContactProblem,
-        domain: Option<&Domain>,
-        d: &Discretization,
+        bounds: &ErrorBounds,
         solution: ContactSolution,
         tolerance: f64,
     ) -> Result<Self, MeasureError> {
         let start = Instant::now();
-        let bound = ErrorBound::of_solution(problem, domain, d, &solution)?;
+        let bound = bounds.of_solution(&solution)?;
         Ok(Self { solution, bound, tolerance, bound_seconds: start.elapsed().as_secs_f64() })
     }
 

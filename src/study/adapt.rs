@@ -1,14 +1,14 @@
 //! Meshes that are refined where the error is.
 
 use std::sync::Arc;
-use std::time::Instant;
+use web_time::Instant;
 
 use super::accuracy::{Bounded, Tolerance, solve_bounded};
 use super::prolongation::Fields;
 use super::{StudyError, mark};
 use crate::action::{ContactSolution, certify};
 use crate::discretization::Discretization;
-use crate::estimate::{ErrorBound, energy_error, residual_indicators};
+use crate::estimate::{ErrorBound, ErrorBounds, energy_error, residual_indicators};
 use crate::mesh::{Bisection, Mesh};
 use crate::problem::{ContactProblem, Domain, ExactSolution};
 use crate::qp::TimeLimit;
@@ -259,7 +259,8 @@ impl AdaptiveStudy {
         let Ok(solution) = certify(&d, Candidate { displacement, multiplier, statistics }, tolerance) else {
             return Ok(false);
         };
-        let bounded = Bounded::new(&self.problem, self.domain.as_ref(), &d, solution, tolerance)?;
+        let bounds = ErrorBounds::new(&self.problem, self.domain.as_ref(), &d);
+        let bounded = Bounded::new(&bounds, solution, tolerance)?;
         self.last = Some((d, bounded));
         self.marked = marked;
         self.bisection = bisection;

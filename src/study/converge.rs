@@ -1,6 +1,6 @@
 //! Errors on a sequence of refined meshes.
 
-use std::time::Instant;
+use web_time::Instant;
 
 use thiserror::Error;
 

@@ -1,11 +1,14 @@
 //! The contract of a QP backend, checked for every one in the build.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use membrane_contact::action::certify;
 use membrane_contact::discretization::Discretization;
 use membrane_contact::mesh::{Pattern, rectangle};
 use membrane_contact::problem::Case;
 use membrane_contact::qp::{
-    Clarabel, KktResiduals, QpBackend, QpOptions, QpProblem, Status, TimeLimit, contact_qp,
+    Clarabel, Interrupt, KktResiduals, QpBackend, QpOptions, QpProblem, Status, TimeLimit, contact_qp,
 };
 use membrane_contact::solver::{ActiveSet, Candidate, ContactSolver, SolverOptions, StartingPoint};
 use membrane_contact::sprs::{CsMat, TriMat};
@@ -240,5 +243,29 @@ fn a_limit_of_time_is_kept_from_the_shortest_to_the_longest_by_every_solver() {
     // What is no limit cannot be asked for.
     for seconds in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e300] {
         assert!(TimeLimit::from_seconds(seconds).is_err());
+    }
+}
+
+#[test]
+fn an_interrupt_is_heard_between_the_steps_of_a_solver() {
+    let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [40, 40], Pattern::Right).unwrap();
+    let problem = exact(Case::Circle, &[]).problem().unwrap();
+    let d = Discretization::new(&problem, mesh).unwrap();
+    for mut solver in solvers().into_iter().filter(|solver| solver.name() != "osqp") {
+        let mut solved = |questions: usize| {
+            let asked = Arc::new(AtomicUsize::new(0));
+            let count = Arc::clone(&asked);
+            let interrupt = Interrupt::new(move || count.fetch_add(1, Ordering::Relaxed) >= questions);
+            let options = SolverOptions { interrupt: Some(interrupt), ..SolverOptions::default() };
+            let candidate = solver.solve(&d, &options).expect("it runs");
+            (candidate, asked.load(Ordering::Relaxed))
+        };
+        let (whole, questions) = solved(usize::MAX);
+        assert_eq!(whole.statistics.status, Status::Solved);
+        assert!(questions > 0 && certify(&d, whole, TOLERANCE).is_ok(), "{questions} questions");
+        let (stopped, _) = solved(0);
+        assert_eq!(stopped.statistics.status, Status::Interrupted);
+        let rejected = certify(&d, stopped, TOLERANCE).expect_err("it has not arrived");
+        assert!(rejected.remedy().contains("asked to stop"), "{}", rejected.remedy());
     }
 }

@@ -215,6 +215,8 @@ pub(crate) fn options(settings: &SolverSettings) -> SolverOptions {
         tolerance: settings.tolerance.or_default(),
         max_iterations: settings.max_iterations,
         time_limit: settings.time_limit,
+        // Ctrl-C ends the program, which keeps what is complete.
+        interrupt: None,
         polish: settings.polish,
         warm_start: None,
     }

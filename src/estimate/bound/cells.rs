@@ -23,7 +23,7 @@ pub(super) struct Cells<'a> {
     /// `lt` over vertices.
     pub(super) lambda: &'a [f64],
     pub(super) fluxes: WedgeFluxes<'a>,
-    pub(super) trace: Trace<'a>,
+    pub(super) trace: &'a Trace<'a>,
 }
 
 /// Sums over triangles.

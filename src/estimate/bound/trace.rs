@@ -30,7 +30,7 @@ const GAUSS: [(f64, f64); 3] =
 pub(super) struct Trace<'a> {
     problem: &'a ContactProblem,
     mesh: &'a Mesh,
-    around: &'a VertexTriangles,
+    pub(super) around: VertexTriangles,
     height_h: &'a [f64],
     /// The circle around a disk, if the mesh has all its boundary vertices on it.
     pub(super) circle: Option<Circle>,
@@ -57,12 +57,7 @@ struct Edge {
 }
 
 impl<'a> Trace<'a> {
-    pub(super) fn new(
-        problem: &'a ContactProblem,
-        domain: Option<&Domain>,
-        d: &'a Discretization,
-        around: &'a VertexTriangles,
-    ) -> Self {
+    pub(super) fn new(problem: &'a ContactProblem, domain: Option<&Domain>, d: &'a Discretization) -> Self {
         let has_its_boundary_on = |circle: &Circle| {
             let mut kinds = d.mesh().points().iter().zip(d.mesh().kind());
             kinds.all(|(&point, &kind)| {
@@ -71,6 +66,7 @@ impl<'a> Trace<'a> {
             })
         };
         let circle = domain.and_then(Circle::of_domain).filter(has_its_boundary_on);
+        let around = VertexTriangles::new(d.mesh().points().len(), d.mesh().triangles());
         Self { problem, mesh: d.mesh(), around, height_h: d.height(), circle }
     }
 

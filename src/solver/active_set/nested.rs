@@ -2,10 +2,11 @@
 
 use sprs::CsMat;
 
-use super::obstacle::{Limits, Obstacle};
+use super::obstacle::Obstacle;
 use crate::discretization::Discretization;
 use crate::multigrid::cholesky::NotFactored;
 use crate::multigrid::hierarchy::{Hierarchy, Level};
+use crate::qp::Limits;
 use crate::solver::decoupled::Decoupled;
 
 /// Projected Gauss-Seidel sweeps over a gap that comes from the next coarser level. They save a factorisation or two on each level

@@ -2,13 +2,12 @@
 
 use std::collections::HashSet;
 use std::hash::{DefaultHasher, Hash, Hasher};
-use std::time::Instant;
 
 use sprs::CsMat;
 
 use crate::discretization::Discretization;
 use crate::multigrid::cholesky::{Cholesky, NotFactored};
-use crate::qp::Status;
+use crate::qp::{Limits, Status};
 
 /// A multiplier, or a gap times its diagonal entry, below zero by less than this fraction of the terms that cancel in its row
 /// is a zero, rounded. Measured in the row alone: at the tip of a mesh refined towards a point, gaps of any size are real.
@@ -22,26 +21,6 @@ pub(super) const SLIGHT: f64 = 1e-12;
 /// A vertex is taken for touching when its multiplier is so much larger than its gap, each in units of the data. A guess
 /// that is too small is repaired in fewer steps than one that is too large: all that has passed through is seen at once.
 const CAUTION: f64 = 30.0;
-
-/// When to stop although the contact set is not consistent yet.
-pub(in crate::solver) struct Limits {
-    /// Linear solves for the gap.
-    pub(in crate::solver) steps: usize,
-    pub(in crate::solver) deadline: Option<Instant>,
-}
-
-impl Limits {
-    /// Why not to solve again after so many solves.
-    fn reached(&self, solves: usize) -> Option<Status> {
-        if solves >= self.steps {
-            Some(Status::IterationLimit)
-        } else if self.deadline.is_some_and(|deadline| Instant::now() > deadline) {
-            Some(Status::TimeLimit)
-        } else {
-            None
-        }
-    }
-}
 
 /// `K w - y = b`, `w >= 0`, `y >= 0`, `w'y = 0`.
 pub(in crate::solver) struct Obstacle<'k> {

@@ -1,5 +1,7 @@
 use sprs::{CsMat, TriMat};
 
+use web_time::Instant;
+
 use super::obstacle::SLIGHT;
 use super::*;
 use crate::action::certify;
@@ -20,6 +22,10 @@ const DEEP: usize = 22;
 
 /// A distance from the corner within which gaps are below [`SLIGHT`].
 const TIP: f64 = 1e-6;
+
+fn limits(steps: usize) -> Limits {
+    Limits::new(steps, None, Instant::now(), None)
+}
 
 fn dense(entries: &[[f64; 3]; 3]) -> CsMat<f64> {
     let mut triplets = TriMat::new((3, 3));
@@ -59,7 +65,7 @@ fn contact_sets_that_would_come_back_are_left_by_single_repairs() {
     let mut found = 0;
     for start in starts {
         found += usize::from(cycles(&k, &b, &start));
-        let limits = Limits { steps: 60, deadline: None };
+        let limits = limits(60);
         let (gap, status, _) = obstacle(&k, &b).settle(start, &limits).unwrap();
         assert_eq!(status, Status::Solved);
         for i in 0..3 {
@@ -81,7 +87,7 @@ fn few_factorisations_are_needed_on_each_level() {
     assert!(steps.iter().all(|&steps| steps <= FACTORIZATIONS), "{steps:?}");
     // A guess of no contact needs more.
     let nothing = vec![false; d.interior().len()];
-    let cold = settle(&d, nothing, &Limits { steps: MAX_STEPS, deadline: None }).unwrap();
+    let cold = settle(&d, nothing, &limits(MAX_STEPS)).unwrap();
     assert!(cold.repairs + 1 > FACTORIZATIONS);
 }
 
@@ -139,7 +145,7 @@ fn contact_is_found_at_the_tip_of_a_deep_mesh() {
         let gap = half.solve(&active).unwrap();
         assert!(half.wrong(&active, &gap, SLIGHT * d.scales().displacement).is_empty());
         assert!(!half.wrong(&active, &gap, 0.0).is_empty());
-        let cut = settle(&d, active, &Limits { steps: 1, deadline: None }).unwrap();
+        let cut = settle(&d, active, &limits(1)).unwrap();
         let statistics = Statistics::of("cut");
         let cut = Candidate { displacement: cut.displacement, multiplier: cut.multiplier, statistics };
         assert!(certify(&d, cut, TOLERANCE).is_err(), "it is no solution");

@@ -1,7 +1,7 @@
 //! The unit of work: one product of the stiffness matrix with a vector.
 
 use std::hint::black_box;
-use std::time::Instant;
+use web_time::Instant;
 
 use sprs::CsMat;
 

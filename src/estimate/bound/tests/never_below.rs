@@ -3,8 +3,8 @@
 use super::{ErrorBound, bound};
 use crate::action::certify;
 use crate::discretization::Discretization;
-use crate::estimate::energy_error as measure;
 use crate::estimate::tests::{exact, mesh, problem, solve};
+use crate::estimate::{ErrorBounds, energy_error as measure};
 use crate::geometry::friedrichs;
 use crate::mesh::samples::{Random, irregular};
 use crate::mesh::{Mesh, disk, polygon};
@@ -206,7 +206,7 @@ fn of_solutions_that_were_projected() {
         for tolerance in [1e-2, 1e-4, 1e-8] {
             let options = SolverOptions { tolerance, polish: false, ..SolverOptions::default() };
             let solution = certify(&d, solver.solve(&d, &options).unwrap(), tolerance).unwrap();
-            let found = ErrorBound::of_solution(&problem, None, &d, &solution).unwrap();
+            let found = ErrorBounds::new(&problem, None, &d).of_solution(&solution).unwrap();
             let error = energy_error(&d, solution.displacement(), &exact);
             let is = format!("{}, {tolerance:e}: {found:?}, error {error:e}", solver.name());
             assert!(found.total >= error, "{is}");

@@ -10,7 +10,7 @@ use crate::estimate::tests::{mesh, solve};
 use crate::fem::DEGREE_4;
 use crate::geometry::{distance_sq, friedrichs};
 use crate::mesh::samples::{irregular, square};
-use crate::mesh::{Mesh, SubTriangulation, VertexTriangles};
+use crate::mesh::{Mesh, SubTriangulation};
 use crate::problem::{ContactProblem, Domain, Function};
 
 /// Rounding of sums of some hundred terms of size one.
@@ -117,9 +117,8 @@ fn the_lift_has_the_seminorm_of_its_gradient() {
     let g = |x: f64, y: f64| 1.0 + x * (1.0 - x) + y;
     let problem = ContactProblem::builder().height(Function::from_fn(g)).build().unwrap();
     let d = Discretization::new(&problem, mesh.clone()).unwrap();
-    let around = VertexTriangles::new(mesh.points().len(), mesh.triangles());
     let lambda = vec![2.0; mesh.points().len()];
-    let lift = Trace::new(&problem, None, &d, &around).lift(0, &lambda).unwrap();
+    let lift = Trace::new(&problem, None, &d).lift(0, &lambda).unwrap();
     // E at the part r of the ray from the apex (0.3, 0.8) to (t, 0): r = 1 - y / 0.8.
     let value = |x: f64, y: f64| {
         let r = 1.0 - y / 0.8;
@@ -143,7 +142,7 @@ fn the_lift_has_the_seminorm_of_its_gradient() {
     assert!((lift.seminorm_sq / seminorm_sq - 1.0).abs() < 1e-4, "{lift:?} {seminorm_sq}");
     assert!((lift.action / (2.0 * integral) - 1.0).abs() < 1e-4, "{lift:?} {integral}");
     let constant = ContactProblem::builder().height(1.0).build().unwrap();
-    assert_eq!(Trace::new(&constant, None, &d, &around).lift(0, &lambda).unwrap().seminorm_sq, 0.0);
+    assert_eq!(Trace::new(&constant, None, &d).lift(0, &lambda).unwrap().seminorm_sq, 0.0);
 }
 
 /// Without the point number 3.
