@@ -7,7 +7,6 @@ mod projection;
 mod recovery;
 mod residuals;
 mod solution;
-mod sums;
 #[cfg(all(test, feature = "clarabel"))]
 mod tests;
 

@@ -2,21 +2,22 @@
 
 use std::sync::Arc;
 
-use crate::parallel::prelude::*;
 use sprs::CsMat;
 use thiserror::Error;
 
 use crate::fem::{LoadMoments, stiffness_around};
 use crate::mesh::{Mesh, VertexKind, VertexTriangles};
 use crate::numeric::largest;
+use crate::parallel::BLOCK;
+use crate::parallel::prelude::*;
 use crate::problem::{ContactProblem, EvaluationError};
 use crate::text::Number;
 
 /// Tensions, displacements and loads must lie between the inverse of this and this: energies must not overflow.
 const LARGEST: f64 = 1e40;
 
-/// Rows that are worked on together.
-const BLOCK: usize = 4096;
+/// `[u1, u2]`, each over vertices.
+pub type Displacement = [Vec<f64>; 2];
 
 /// The data of (3.4) on a mesh: `K`, `F_i`, `g_h`, the numbering of the unknowns, `|D_a|`.
 ///

@@ -1,7 +1,10 @@
 //! Work on all cores, or, without the feature `parallel`, on one: the same results either way.
 
+mod blocks;
 #[cfg(not(feature = "parallel"))]
 mod sequential;
+
+pub(crate) use blocks::{BLOCK, blocks, sums};
 
 #[cfg(feature = "parallel")]
 pub(crate) use rayon::{join, prelude, scope};

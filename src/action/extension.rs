@@ -1,6 +1,6 @@
 //! The action on the dual cells of the boundary, where `lambda_h` is zero and the exact action need not be.
 
-use crate::discretization::Discretization;
+use crate::discretization::{Discretization, Displacement};
 use crate::mesh::VertexKind;
 
 /// Continues an action over vertices to the boundary, and tells where: `lambda_a` becomes the mean of the action at the
@@ -10,7 +10,7 @@ use crate::mesh::VertexKind;
 /// Where the membranes touch only on one side, or no neighbour knows an action, it stays zero. Linear time.
 pub(crate) fn extend_to_boundary(
     d: &Discretization,
-    [u1, u2]: &[Vec<f64>; 2],
+    [u1, u2]: &Displacement,
     lambda: &mut [f64],
 ) -> Vec<bool> {
     let kind = d.mesh().kind();

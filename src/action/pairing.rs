@@ -1,6 +1,6 @@
 //! The discrete space `Y_h` of actions, its pairing with displacements, and the full discrete problem (4.7).
 
-use crate::discretization::Discretization;
+use crate::discretization::{Discretization, Displacement};
 use crate::fem::load;
 use crate::problem::{EvaluationError, Function};
 
@@ -27,7 +27,7 @@ pub fn is_in_cone(rho: &[f64]) -> bool {
 
 /// The first line of (4.7) tested with the hat functions of membrane 1, then of membrane 2:
 /// `mu_i (grad u_ih, grad phi_a) - (f_i, phi_a) + (-1)^i <lambda_h, phi_a>_h`, over unknowns. Zero at the solution.
-pub fn equilibrium(d: &Discretization, displacement: &[Vec<f64>; 2], lambda: &[f64]) -> [Vec<f64>; 2] {
+pub fn equilibrium(d: &Discretization, displacement: &Displacement, lambda: &[f64]) -> [Vec<f64>; 2] {
     [0, 1].map(|i| {
         let sign = if i == 0 { -1.0 } else { 1.0 };
         let push = d.interior().iter().zip(lambda).map(|(&a, lambda)| sign * lambda * d.dual_area()[a]);
@@ -37,7 +37,7 @@ pub fn equilibrium(d: &Discretization, displacement: &[Vec<f64>; 2], lambda: &[f
 
 /// The second line of (4.7) for one `chi_h` in the cone, over unknowns: `<chi_h - lambda_h, u1h - u2h>_h`. Not negative at
 /// the solution, whatever `chi_h`.
-pub fn variation(d: &Discretization, displacement: &[Vec<f64>; 2], lambda: &[f64], chi: &[f64]) -> f64 {
+pub fn variation(d: &Discretization, displacement: &Displacement, lambda: &[f64], chi: &[f64]) -> f64 {
     let [u1, u2] = displacement;
     let gap: Vec<f64> = u1.iter().zip(u2).map(|(u1, u2)| u1 - u2).collect();
     pairing(d, chi, &gap) - pairing(d, lambda, &gap)
@@ -66,7 +66,7 @@ mod tests {
     }
 
     /// `[u1, u2]` over vertices and `lambda` over unknowns.
-    fn solve(d: &Discretization) -> ([Vec<f64>; 2], Vec<f64>) {
+    fn solve(d: &Discretization) -> (Displacement, Vec<f64>) {
         let candidate = ActiveSet.solve(d, &SolverOptions::default()).unwrap();
         let solution = certify(d, candidate, 1e-8).unwrap();
         let lambda = d.interior().iter().map(|&a| solution.lambda()[a]).collect();

@@ -1,12 +1,10 @@
 //! From a candidate within the tolerance to a pair and an action in their cones, complementary to the last bit.
 
 use super::Action;
-use crate::discretization::Discretization;
+use crate::discretization::{Discretization, Displacement};
 use crate::mesh::VertexKind;
+use crate::parallel::BLOCK;
 use crate::parallel::prelude::*;
-
-/// Vertices that are worked on together.
-const BLOCK: usize = 4096;
 
 /// A pair in `K_gh` (3.3) and an action in `Lambda_h` (4.2) with `lambda_a (u1 - u2)(a) = 0` (4.8), all exactly.
 ///
@@ -27,7 +25,7 @@ const BLOCK: usize = 4096;
 /// the answer, but one to polish it: [`CutOff`] tells what was cut off, and the bound of the error is one of what is
 /// handed out.
 pub(super) struct Projection {
-    pub(super) displacement: [Vec<f64>; 2],
+    pub(super) displacement: Displacement,
     /// Over vertices.
     pub(super) lambda: Vec<f64>,
     /// Over vertices.
@@ -40,7 +38,7 @@ pub(super) struct Projection {
 /// Displacements and multipliers per dual area, over vertices, as they were certified.
 #[derive(Debug, Clone)]
 pub(super) struct Before {
-    pub(super) displacement: [Vec<f64>; 2],
+    pub(super) displacement: Displacement,
     pub(super) lambda: Vec<f64>,
 }
 
@@ -59,7 +57,7 @@ impl Projection {
     /// Of a candidate whose vectors fit `d`, and the action recovered from its displacements.
     pub(super) fn new(
         d: &Discretization,
-        mut displacement: [Vec<f64>; 2],
+        mut displacement: Displacement,
         multiplier: &[f64],
         mut action: Vec<Action>,
     ) -> Self {
@@ -89,7 +87,7 @@ impl Projection {
 }
 
 impl Before {
-    fn new(d: &Discretization, displacement: &[Vec<f64>; 2], multiplier: &[f64]) -> Option<Self> {
+    fn new(d: &Discretization, displacement: &Displacement, multiplier: &[f64]) -> Option<Self> {
         let [u1, u2] = displacement;
         let held =
             |a: usize| d.mesh().kind()[a] == VertexKind::Interior || (u1[a], u2[a]) == (d.height()[a], 0.0);
@@ -106,12 +104,7 @@ impl Before {
 }
 
 /// Whether the membranes touch, over unknowns.
-fn touching(
-    d: &Discretization,
-    [u1, u2]: &[Vec<f64>; 2],
-    multiplier: &[f64],
-    action: &[Action],
-) -> Vec<bool> {
+fn touching(d: &Discretization, [u1, u2]: &Displacement, multiplier: &[f64], action: &[Action]) -> Vec<bool> {
     let scales = d.scales();
     let [mu1, mu2] = d.tension();
     let gap_tension = mu1 * (mu2 / (mu1 + mu2));
@@ -126,7 +119,7 @@ fn touching(
 }
 
 /// `u1 = g_h` and `u2 = 0` at the boundary vertices, zero at unused ones: the largest change of the gap.
-fn take_data_of_boundary(d: &Discretization, [u1, u2]: &mut [Vec<f64>; 2]) -> f64 {
+fn take_data_of_boundary(d: &Discretization, [u1, u2]: &mut Displacement) -> f64 {
     let mut changed: f64 = 0.0;
     let kinds = d.mesh().kind().iter().enumerate();
     for (a, _) in kinds.filter(|&(_, &kind)| kind != VertexKind::Interior) {
@@ -137,7 +130,7 @@ fn take_data_of_boundary(d: &Discretization, [u1, u2]: &mut [Vec<f64>; 2]) -> f6
 }
 
 /// Makes `u1 = u2` where they touch and keeps `mu1 u1 + mu2 u2`: the largest gap or overlap that there was.
-fn close_gaps(d: &Discretization, touching: &[bool], [u1, u2]: &mut [Vec<f64>; 2]) -> f64 {
+fn close_gaps(d: &Discretization, touching: &[bool], [u1, u2]: &mut Displacement) -> f64 {
     let [mu1, mu2] = d.tension();
     let share = [mu1 / (mu1 + mu2), mu2 / (mu1 + mu2)];
     let mut closed: f64 = 0.0;

@@ -1,11 +1,8 @@
 //! Local post-processing (4.5): the action as each membrane sees it.
 
+use crate::discretization::{Discretization, Displacement};
+use crate::parallel::BLOCK;
 use crate::parallel::prelude::*;
-
-use crate::discretization::Discretization;
-
-/// Unknowns that are worked on together.
-const BLOCK: usize = 4096;
 
 /// Rounding leaves of a difference at most this many units in the last place of the terms that cancel in it: a row of
 /// `K` has about seven entries, each the sum of two rounded contributions.
@@ -30,12 +27,12 @@ impl Action {
     ///
     /// # Panics
     /// When a displacement is not over the vertices of `d`.
-    pub fn recover(d: &Discretization, displacement: &[Vec<f64>; 2]) -> Vec<Self> {
+    pub fn recover(d: &Discretization, displacement: &Displacement) -> Vec<Self> {
         let at = |&a: &usize| Self::at(d, a, displacement);
         d.interior().par_iter().with_min_len(BLOCK).map(at).collect()
     }
 
-    fn at(d: &Discretization, a: usize, [u1, u2]: &[Vec<f64>; 2]) -> Self {
+    fn at(d: &Discretization, a: usize, [u1, u2]: &Displacement) -> Self {
         let balance = d.balance(a, [u1, u2]);
         let per_area = |force: f64| force / d.dual_area()[a];
         let [mu1, mu2] = d.tension();

@@ -2,16 +2,12 @@
 
 use std::ops::Range;
 
-use crate::parallel::prelude::*;
-
 use super::Action;
-use super::sums::sums;
-use crate::discretization::Discretization;
+use crate::discretization::{Discretization, Displacement};
 use crate::mesh::VertexKind;
 use crate::numeric::or_infinite;
-
-/// Vertices that are worked on together.
-const BLOCK: usize = 4096;
+use crate::parallel::prelude::*;
+use crate::parallel::{BLOCK, sums};
 
 /// One check: the largest defect over all vertices, relative to the [`Scales`](crate::discretization::Scales) of the
 /// data. A NaN makes it infinite.
@@ -55,7 +51,7 @@ impl Residuals {
     /// When `displacement` is not over the vertices, or `multiplier` or `action` not over the unknowns of `d`.
     pub fn new(
         d: &Discretization,
-        displacement: &[Vec<f64>; 2],
+        displacement: &Displacement,
         multiplier: &[f64],
         action: &[Action],
     ) -> Self {

@@ -1,9 +1,9 @@
 //! A certified solution.
 
 use super::projection::{Before, Projection};
-use super::sums::sums;
 use super::{CutOff, Residuals, extend_to_boundary};
-use crate::discretization::Discretization;
+use crate::discretization::{Discretization, Displacement};
+use crate::parallel::sums;
 use crate::solver::Statistics;
 
 /// Displacements, action and contact set of (3.4), (4.5): made by [`certify`](super::certify) only.
@@ -13,7 +13,7 @@ use crate::solver::Statistics;
 /// without a force, `u1 = u2` and `lambda_a = 0`. *Contact* is where they touch, *pressed* where there is a force.
 #[derive(Debug, Clone)]
 pub struct ContactSolution {
-    displacement: [Vec<f64>; 2],
+    displacement: Displacement,
     lambda: Vec<f64>,
     contact: Vec<bool>,
     energy: f64,
@@ -44,7 +44,7 @@ impl Totals {
     fn extended(
         self,
         d: &Discretization,
-        displacement: &[Vec<f64>; 2],
+        displacement: &Displacement,
         contact: &[bool],
         lambda: &[f64],
     ) -> Self {
@@ -83,7 +83,7 @@ impl ContactSolution {
     }
 
     /// `[u1, u2]`, boundary values included. Unit: length.
-    pub fn displacement(&self) -> &[Vec<f64>; 2] {
+    pub fn displacement(&self) -> &Displacement {
         &self.displacement
     }
 
@@ -135,7 +135,7 @@ impl ContactSolution {
 
     /// The displacements and the action, over vertices, whose residuals were certified: the solution's own but for an answer
     /// that had both a gap and a multiplier somewhere. Certified again, they give this solution again.
-    pub fn certified(&self) -> (&[Vec<f64>; 2], &[f64]) {
+    pub fn certified(&self) -> (&Displacement, &[f64]) {
         match &self.before {
             Some(before) => (&before.displacement, &before.lambda),
             None => (&self.displacement, &self.lambda),
@@ -158,7 +158,7 @@ impl ContactSolution {
     }
 }
 
-fn energy(d: &Discretization, [u1, u2]: &[Vec<f64>; 2]) -> f64 {
+fn energy(d: &Discretization, [u1, u2]: &Displacement) -> f64 {
     let of = |i: usize, u: &[f64], a: usize| {
         (0.5 * d.tension()[i] * d.stiffness_row(a, |b| u[b]) - d.load()[i][a]) * u[a]
     };

@@ -27,7 +27,7 @@ pub use warning::LoadWarning;
 
 use super::MeasureError;
 use crate::action::{Action, ContactSolution, extend_to_boundary};
-use crate::discretization::Discretization;
+use crate::discretization::{Discretization, Displacement};
 use crate::flux::WedgeFluxes;
 use crate::geometry::friedrichs;
 use crate::problem::{ContactProblem, Domain};
@@ -98,7 +98,7 @@ impl ErrorBound {
         problem: &ContactProblem,
         domain: Option<&Domain>,
         d: &Discretization,
-        displacement: &[Vec<f64>; 2],
+        displacement: &Displacement,
     ) -> Result<Self, MeasureError> {
         ErrorBounds::new(problem, domain, d).of_displacement(displacement)
     }
@@ -163,7 +163,7 @@ impl<'a> ErrorBounds<'a> {
     ///
     /// # Errors
     /// Likewise.
-    pub fn of_displacement(&self, displacement: &[Vec<f64>; 2]) -> Result<ErrorBound, MeasureError> {
+    pub fn of_displacement(&self, displacement: &Displacement) -> Result<ErrorBound, MeasureError> {
         MeasureError::check(self.d, displacement)?;
         let seen = Action::recover(self.d, displacement);
         let action = likely_action(self.d, displacement, &seen);
@@ -184,7 +184,7 @@ impl<'a> ErrorBounds<'a> {
     /// With any `action >= 0` over vertices, zero on the boundary, where it is still to be continued to.
     fn with_action(
         &self,
-        displacement: &[Vec<f64>; 2],
+        displacement: &Displacement,
         seen: &[Action],
         mut action: Vec<f64>,
     ) -> Result<ErrorBound, MeasureError> {
@@ -201,7 +201,7 @@ impl<'a> ErrorBounds<'a> {
 }
 
 /// The recovered action where the membranes seem to touch, cut off at zero: over vertices.
-fn likely_action(d: &Discretization, [u1, u2]: &[Vec<f64>; 2], seen: &[Action]) -> Vec<f64> {
+fn likely_action(d: &Discretization, [u1, u2]: &Displacement, seen: &[Action]) -> Vec<f64> {
     let scales = d.scales();
     let at = |(&a, action): (&usize, &Action)| {
         // Where there is a gap, an action would cost its product with the gap; rounding of a large gap is none.

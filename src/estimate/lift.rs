@@ -1,13 +1,12 @@
 //! The norm of `H^-1` by a Riesz lift.
 
-use crate::parallel::prelude::*;
-
 use super::MeasureError;
 use super::spaces::Spaces;
 use crate::discretization::Discretization;
 use crate::fem::CutRule;
 use crate::geometry::twice_signed_area;
 use crate::mesh::{Mesh, SubTriangulation};
+use crate::parallel::prelude::*;
 
 /// Triangles that are integrated together: enough for all threads, few enough to need no memory.
 const BATCH: usize = 1 << 16;

@@ -1,13 +1,12 @@
 //! The norms of the error of a solution.
 
-use crate::parallel::prelude::*;
-
 use super::MeasureError;
 use super::lift::{DualNorm, dual_norm};
 use crate::action::ContactSolution;
-use crate::discretization::Discretization;
+use crate::discretization::{Discretization, Displacement};
 use crate::fem::{CutRule, gradient};
 use crate::mesh::{Mesh, SubTriangulation, VertexKind};
+use crate::parallel::prelude::*;
 use crate::problem::{Domain, ExactSolution};
 
 /// Subdivisions of the triangles of `S_h` that a curve crosses: their parts are smaller than `h / 30`.
@@ -53,21 +52,20 @@ pub struct ContactAreas {
     /// The dual cells of the vertices in contact.
     pub discrete: f64,
     /// Where the exact action is positive.
-    pub pushing: f64,
+    pub pressed: f64,
     /// Where the exact gap is zero.
-    pub touching: f64,
+    pub contact: f64,
 }
 
 impl ContactAreas {
     /// The distance of the discrete area from the interval between the exact ones: without a biactive set, its error.
     pub fn error(&self) -> f64 {
-        (self.pushing - self.discrete).max(self.discrete - self.touching).max(0.0)
+        (self.pressed - self.discrete).max(self.discrete - self.contact).max(0.0)
     }
 }
 
 impl ErrorNorms {
-    /// Measures a solution of `d` against the exact one. Linear time but for a Cholesky factorisation of `d`'s stiffness
-    /// matrix, which the lift of the action uses.
+    /// Measures a solution of `d` against the exact one, in linear time.
     ///
     /// # Errors
     /// [`MeasureError`] when the solution is not one of `d`, or the lift cannot be found.
@@ -104,7 +102,7 @@ impl ErrorNorms {
             max: [0, 1].map(|i| nodal_max[i].max(sums.max[i])),
             lambda_l2: sums.lambda_sq.sqrt(),
             lambda_dual,
-            contact: ContactAreas { discrete: contact_area, pushing: sums.pushing, touching: sums.touching },
+            contact: ContactAreas { discrete: contact_area, pressed: sums.pressed, contact: sums.contact },
             quadrature: sums.largest_change(&shallow),
         })
     }
@@ -117,7 +115,7 @@ impl ErrorNorms {
 /// [`MeasureError`] when the displacements are not over the vertices, or the triangles cannot be divided.
 pub fn energy_error(
     d: &Discretization,
-    displacement: &[Vec<f64>; 2],
+    displacement: &Displacement,
     exact: &ExactSolution,
 ) -> Result<f64, MeasureError> {
     MeasureError::check(d, displacement)?;
@@ -137,22 +135,22 @@ pub(super) fn cut_rule(exact: &ExactSolution, depth: usize) -> CutRule {
 /// What is measured, over vertices.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Fields<'a> {
-    pub(super) displacement: &'a [Vec<f64>; 2],
+    pub(super) displacement: &'a Displacement,
     pub(super) lambda: &'a [f64],
 }
 
 /// Integrals over a part of the domain.
 #[derive(Debug, Clone, Copy, Default)]
-struct Sums {
+struct Integrals {
     h1_sq: [f64; 2],
     l2_sq: [f64; 2],
     max: [f64; 2],
     lambda_sq: f64,
-    pushing: f64,
-    touching: f64,
+    pressed: f64,
+    contact: f64,
 }
 
-impl Sums {
+impl Integrals {
     fn add(&mut self, other: &Self) {
         for i in 0..2 {
             self.h1_sq[i] += other.h1_sq[i];
@@ -160,8 +158,8 @@ impl Sums {
             self.max[i] = self.max[i].max(other.max[i]);
         }
         self.lambda_sq += other.lambda_sq;
-        self.pushing += other.pushing;
-        self.touching += other.touching;
+        self.pressed += other.pressed;
+        self.contact += other.contact;
     }
 
     fn energy(&self, [mu1, mu2]: [f64; 2]) -> f64 {
@@ -177,7 +175,7 @@ impl Sums {
     fn largest_change(&self, other: &Self) -> f64 {
         let figures = |sums: &Self| {
             let norms_sq = [sums.h1_sq[0], sums.h1_sq[1], sums.l2_sq[0], sums.l2_sq[1], sums.lambda_sq];
-            norms_sq.into_iter().map(f64::sqrt).chain([sums.pushing, sums.touching])
+            norms_sq.into_iter().map(f64::sqrt).chain([sums.pressed, sums.contact])
         };
         let changes = figures(self).zip(figures(other)).filter(|(deep, _)| *deep > 0.0);
         changes.map(|(deep, shallow)| (deep - shallow).abs() / deep).fold(0.0, f64::max)
@@ -210,24 +208,24 @@ fn integrate(
     fields: Fields,
     rule: &CutRule,
     exact: &ExactSolution,
-) -> [Sums; 2] {
+) -> [Integrals; 2] {
     let shallower = rule.shallower();
     let on_triangle = |k: usize| {
         let values = |i: usize| mesh.triangles()[k].map(|a| fields.displacement[i][a]);
         let u_h = [0, 1].map(|i| Affine::through(mesh.corners(k), values(i)));
-        let mut sums = [Sums::default(); 2];
+        let mut sums = [Integrals::default(); 2];
         for t in 6 * k..6 * (k + 1) {
             let corners = sub.mesh().corners(t);
             let lambda_h = fields.lambda[sub.vertex_of(t)];
-            let deep = sums_on(corners, rule, &u_h, lambda_h, exact);
+            let deep = integrals_on(corners, rule, &u_h, lambda_h, exact);
             let plain = rule.is_plain(corners);
             sums[0].add(&deep);
-            sums[1].add(&if plain { deep } else { sums_on(corners, &shallower, &u_h, lambda_h, exact) });
+            sums[1].add(&if plain { deep } else { integrals_on(corners, &shallower, &u_h, lambda_h, exact) });
         }
         sums
     };
     let triangles = mesh.triangles().len();
-    let mut total = [Sums::default(); 2];
+    let mut total = [Integrals::default(); 2];
     for start in (0..triangles).step_by(BATCH) {
         let end = (start + BATCH).min(triangles);
         let batch: Vec<_> = (start..end).into_par_iter().map(on_triangle).collect();
@@ -240,14 +238,14 @@ fn integrate(
 }
 
 /// The integrals over one triangle of `S_h`.
-fn sums_on(
+fn integrals_on(
     corners: [[f64; 2]; 3],
     rule: &CutRule,
     u_h: &[Affine; 2],
     lambda_h: f64,
     exact: &ExactSolution,
-) -> Sums {
-    let mut sums = Sums::default();
+) -> Integrals {
+    let mut sums = Integrals::default();
     rule.visit(corners, &mut |point, weight| {
         let [x, y] = point;
         let (u, grad_u, lambda) = (exact.u(x, y), exact.grad_u(x, y), exact.lambda(x, y));
@@ -259,13 +257,13 @@ fn sums_on(
             sums.max[i] = sums.max[i].max(error.abs());
         }
         sums.lambda_sq += weight * (lambda - lambda_h).powi(2);
-        sums.pushing += weight * f64::from(lambda > 0.0);
-        sums.touching += weight * f64::from(u[0] == u[1]);
+        sums.pressed += weight * f64::from(lambda > 0.0);
+        sums.contact += weight * f64::from(u[0] == u[1]);
     });
     sums
 }
 
-fn nodal_max(mesh: &Mesh, displacement: &[Vec<f64>; 2], exact: &ExactSolution) -> [f64; 2] {
+fn nodal_max(mesh: &Mesh, displacement: &Displacement, exact: &ExactSolution) -> [f64; 2] {
     let mut largest = [0.0f64; 2];
     for (a, [x, y]) in mesh.points().iter().enumerate().filter(|(a, _)| mesh.kind()[*a] != VertexKind::Unused)
     {

@@ -1,7 +1,7 @@
 //! The residual estimator, to compare the guaranteed bound with.
 
 use super::MeasureError;
-use crate::discretization::Discretization;
+use crate::discretization::{Discretization, Displacement};
 use crate::fem::gradient;
 use crate::geometry::distance_sq;
 use crate::mesh::HalfEdges;
@@ -21,7 +21,7 @@ use crate::mesh::HalfEdges;
 /// [`MeasureError::OtherMesh`] when the vectors are not over the vertices.
 pub fn residual_indicators(
     d: &Discretization,
-    displacement: &[Vec<f64>; 2],
+    displacement: &Displacement,
     lambda: &[f64],
 ) -> Result<Vec<f64>, MeasureError> {
     MeasureError::check(d, [&displacement[0], &displacement[1], lambda])?;

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::norms::{Fields, cut_rule};
 use super::*;
 use crate::action::{ContactSolution, certify};
-use crate::discretization::Discretization;
+use crate::discretization::{Discretization, Displacement};
 use crate::fem::CutRule;
 use crate::mesh::samples::irregular;
 use crate::mesh::{Mesh, Pattern, disk, l_shape, rectangle};
@@ -44,7 +44,7 @@ fn measure(exact: &ExactSolution, mesh: &Mesh) -> ErrorNorms {
     ErrorNorms::new(&d, &solve(&d), exact).unwrap()
 }
 
-/// Sums of some thousand terms of size one.
+/// Integrals of some thousand terms of size one.
 const ROUNDING: f64 = 1e-12;
 
 fn close(a: f64, b: f64) -> bool {
@@ -74,7 +74,7 @@ fn the_strip_has_the_errors_that_are_known_in_closed_form() {
         let on_line = (n - 1.0) * h * h * q * q / 4.0;
         let at_boundary = 0.5 * (1.0 - (n - 1.0).powi(2) * h * h) * q * q;
         assert!(close(norms.lambda_l2, (on_line + at_boundary).sqrt()), "{norms:?}");
-        assert!(close(norms.contact.touching, 0.5) && close(norms.contact.pushing, 0.5), "{norms:?}");
+        assert!(close(norms.contact.contact, 0.5) && close(norms.contact.pressed, 0.5), "{norms:?}");
         assert!(close(norms.contact.error(), 0.5 - (n - 1.0) * (n / 2.0) * h * h), "{norms:?}");
         assert!(norms.quadrature < ROUNDING && norms.lambda_dual.quadrature < ROUNDING, "nothing is cut");
         // The negative test: another curvature has other errors.
@@ -141,7 +141,7 @@ fn an_action_of_the_wrong_sign_or_displacements_exchanged_do_not_converge() {
         let [u1, u2] = solution.displacement().clone();
         let flipped: Vec<f64> = solution.lambda().iter().map(|lambda| -lambda).collect();
         let rule = cut_rule(&exact, 3);
-        let measure = |displacement: [Vec<f64>; 2], lambda: &[f64]| {
+        let measure = |displacement: Displacement, lambda: &[f64]| {
             let fields = Fields { displacement: &displacement, lambda };
             ErrorNorms::of_fields(&d, fields, solution.contact_area(), &rule, &exact).unwrap()
         };
@@ -181,7 +181,7 @@ fn the_quadrature_resolves_the_free_boundary_and_says_how_well() {
     // Rules of a case without curves cut nothing.
     let no_curves = Case::NoContact.solution(&BTreeMap::new()).unwrap();
     let unresolved = measure(&cut_rule(&no_curves, 3));
-    let figures = |e: &ErrorNorms| [e.lambda_l2, e.h1[0], e.contact.pushing];
+    let figures = |e: &ErrorNorms| [e.lambda_l2, e.h1[0], e.contact.pressed];
     let change = |e: &ErrorNorms| {
         let pairs = figures(e).into_iter().zip(figures(&deep));
         pairs.map(|(figure, deep)| (figure - deep).abs() / deep).fold(0.0, f64::max)
@@ -191,17 +191,17 @@ fn the_quadrature_resolves_the_free_boundary_and_says_how_well() {
     assert!(change(&unresolved) > 2.0 * usual.quadrature, "{unresolved:?}");
     assert_eq!(unresolved.quadrature, 0.0, "it cannot know");
     let disk = std::f64::consts::PI * 0.09;
-    assert!((deep.contact.pushing - disk).abs() < 1e-5 && (unresolved.contact.pushing - disk).abs() > 5e-5);
+    assert!((deep.contact.pressed - disk).abs() < 1e-5 && (unresolved.contact.pressed - disk).abs() > 5e-5);
 }
 
 #[test]
 fn the_error_of_the_contact_area_leaves_out_the_biactive_set() {
-    let error = |discrete: f64| ContactAreas { discrete, pushing: 1.0, touching: 2.0 }.error();
+    let error = |discrete: f64| ContactAreas { discrete, pressed: 1.0, contact: 2.0 }.error();
     assert_eq!([0.5, 1.0, 1.5, 2.0, 2.25].map(error), [0.5, 0.0, 0.0, 0.0, 0.25]);
     let exact = exact(Case::Annulus, &[]);
     let contact = measure(&exact, &mesh(&exact.domain(), 16)).contact;
     let [inner, outer] = [0.25f64, 0.35].map(|radius| std::f64::consts::PI * radius * radius);
-    assert!((contact.pushing - inner).abs() < 1e-4 && (contact.touching - outer).abs() < 1e-4, "{contact:?}");
+    assert!((contact.pressed - inner).abs() < 1e-4 && (contact.contact - outer).abs() < 1e-4, "{contact:?}");
 }
 
 #[test]

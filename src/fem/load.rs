@@ -1,9 +1,8 @@
 //! Load vectors.
 
-use crate::parallel::prelude::*;
-
 use super::moments::LoadMoments;
 use crate::mesh::{Mesh, VertexTriangles};
+use crate::parallel::prelude::*;
 use crate::problem::{EvaluationError, Function};
 
 /// The load vector `F_a = int f phi_a`, by quadrature of degree 4 (for `f phi_a`: exact for `f` of degree 3). Triangles that

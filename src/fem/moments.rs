@@ -2,18 +2,17 @@
 
 use std::ops::Range;
 
-use crate::parallel::prelude::*;
-
 use super::CutRule;
 use super::dual_norm::dual_norm;
 use super::quadrature::DEGREE_4;
 use super::second_rule::SecondRule;
 use crate::geometry::{poincare, twice_signed_area};
 use crate::mesh::{Mesh, VertexTriangles, corner_of};
+use crate::parallel::prelude::*;
 use crate::problem::{EvaluationError, Function};
 
 /// Triangles whose quadrature points are evaluated together.
-pub(super) const BLOCK: usize = 512;
+pub(super) const BATCH: usize = 512;
 
 /// Subdivisions of a triangle that a jump of the load crosses: the jump is where it is, up to a sixteenth of the mesh size
 /// squared.
@@ -45,7 +44,7 @@ impl LoadMoments {
             return Ok(Self::Constant(value));
         }
         let triangles = mesh.triangles().len();
-        let blocks = || (0..triangles.div_ceil(BLOCK)).into_par_iter();
+        let blocks = || (0..triangles.div_ceil(BATCH)).into_par_iter();
         let area_of = |block: usize| triangles_of(mesh, block).map(|t| mesh.triangle_area(t)).sum();
         let areas: Vec<f64> = blocks().map(area_of).collect();
         let second_rule = SecondRule::new(areas.iter().sum());
@@ -242,7 +241,7 @@ fn on_block(
 
 /// The triangles of a block.
 fn triangles_of(mesh: &Mesh, block: usize) -> Range<usize> {
-    block * BLOCK..((block + 1) * BLOCK).min(mesh.triangles().len())
+    block * BATCH..((block + 1) * BATCH).min(mesh.triangles().len())
 }
 
 /// A function at many points.

@@ -1,13 +1,11 @@
 //! The stiffness matrix.
 
-use crate::parallel::prelude::*;
 use sprs::CsMat;
 
 use super::local_stiffness;
 use crate::mesh::{Mesh, VertexTriangles, corner_of};
-
-/// Rows that are assembled together.
-const BLOCK: usize = 4096;
+use crate::parallel::blocks;
+use crate::parallel::prelude::*;
 
 /// An entry whose contributions cancel to this fraction of their size is an exact zero, spoilt by rounding (the
 /// diagonals of right-angled cells): it is left out, which keeps factorisations and products sparse.
@@ -24,10 +22,8 @@ pub fn stiffness(mesh: &Mesh) -> CsMat<f64> {
 /// [`stiffness`], with the triangles around the vertices at hand.
 pub(crate) fn stiffness_around(mesh: &Mesh, around: &VertexTriangles) -> CsMat<f64> {
     let vertices = mesh.points().len();
-    let blocks: Vec<Rows> = (0..vertices.div_ceil(BLOCK))
-        .into_par_iter()
-        .map(|block| assemble_rows(mesh, around, block * BLOCK..((block + 1) * BLOCK).min(vertices)))
-        .collect();
+    let rows_of = |block| assemble_rows(mesh, around, block);
+    let blocks: Vec<Rows> = blocks(vertices).into_par_iter().map(rows_of).collect();
 
     let entries = blocks.iter().map(|rows| rows.columns.len()).sum();
     let mut start = Vec::with_capacity(vertices + 1);

@@ -3,6 +3,7 @@
 use super::field::constant_outward;
 use super::reconstruct::discrete_flux;
 use super::{Flux, Reconstruction, Reconstructor};
+use crate::discretization::Displacement;
 use crate::mesh::VertexKind;
 use crate::numeric::largest;
 
@@ -30,7 +31,7 @@ impl FluxDefects {
     /// When the vectors are not over the vertices or the fluxes are not on the sub-triangles of `reconstructor`.
     pub fn new(
         reconstructor: &Reconstructor,
-        displacement: &[Vec<f64>; 2],
+        displacement: &Displacement,
         lambda: &[f64],
         flux: &[Flux; 2],
         kind: Reconstruction,

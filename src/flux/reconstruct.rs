@@ -3,7 +3,7 @@
 use super::Reconstruction;
 use super::fan::{Fan, fans};
 use super::field::{Flux, constant_outward, inner_product, through};
-use crate::discretization::Discretization;
+use crate::discretization::{Discretization, Displacement};
 use crate::fem::gradient;
 use crate::mesh::{Mesh, SubTriangulation};
 
@@ -37,7 +37,7 @@ impl<'a> Reconstructor<'a> {
     ///
     /// # Panics
     /// When the displacements are not over the vertices.
-    pub fn reconstruct(&self, displacement: &[Vec<f64>; 2], kind: Reconstruction) -> [Flux<'a>; 2] {
+    pub fn reconstruct(&self, displacement: &Displacement, kind: Reconstruction) -> [Flux<'a>; 2] {
         [0, 1].map(|membrane| self.of_membrane(membrane, &displacement[membrane], kind))
     }
 

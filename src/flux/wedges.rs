@@ -4,17 +4,14 @@
 //! known from what enters through the first half edge and from the source in the wedge; its square is a quadratic form of
 //! the two.
 
-use crate::parallel::prelude::*;
-
 use super::fan::{Walk, wedge_of};
 use super::field::through;
 use super::reconstruct::flux_on;
-use crate::discretization::Discretization;
+use crate::discretization::{Discretization, Displacement};
 use crate::fem::LoadMoments;
 use crate::mesh::{Mesh, VertexTriangles};
-
-/// Vertices that are worked on together.
-const BLOCK: usize = 1024;
+use crate::parallel::prelude::*;
+use crate::parallel::{BLOCK, blocks};
 
 /// Both fluxes `t_ih` of [`Reconstruction::Full`](super::Reconstruction::Full), by their difference to `-mu_i grad u_ih` on
 /// the wedges. Linear time, in parallel; the result does not depend on the number of threads.
@@ -95,7 +92,7 @@ impl<'a> WedgeFluxes<'a> {
     pub(crate) fn new(
         d: &'a Discretization,
         around: &'a VertexTriangles,
-        displacement: &[Vec<f64>; 2],
+        displacement: &Displacement,
         lambda: &'a [f64],
     ) -> Self {
         let mesh = d.mesh();
@@ -108,14 +105,14 @@ impl<'a> WedgeFluxes<'a> {
         let vertices = mesh.points().len();
         let mut changes = vec![[Change::default(); 2]; 3 * mesh.triangles().len()];
         let mut rest = changes.as_mut_slice();
-        let mut blocks = Vec::with_capacity(vertices.div_ceil(BLOCK));
-        for first in (0..vertices).step_by(BLOCK) {
-            let end = (first + BLOCK).min(vertices);
-            let (rows, others) = rest.split_at_mut(around.row(end - 1).end - around.row(first).start);
-            blocks.push((first..end, rows));
+        let mut tasks = Vec::new();
+        for block in blocks(vertices) {
+            let (rows, others) =
+                rest.split_at_mut(around.row(block.end - 1).end - around.row(block.start).start);
+            tasks.push((block, rows));
             rest = others;
         }
-        blocks.into_par_iter().for_each(|(vertices, mut rows)| {
+        tasks.into_par_iter().for_each(|(vertices, mut rows)| {
             let mut patch = Patch::default();
             for a in vertices {
                 let (row, others) = rows.split_at_mut(around.row(a).len());

@@ -25,10 +25,11 @@ use sprs::CsMat;
 
 use crate::discretization::Discretization;
 use crate::mesh::VertexKind;
+use crate::parallel::BLOCK;
 use crate::parallel::prelude::*;
 use coarsening::coarsened;
 use galerkin::galerkin;
-use matrix::{BLOCK, compact_stiffness, reordered};
+use matrix::{compact_stiffness, reordered};
 use ordering::{banded_order, inverse, is_banded};
 
 /// An entry below this fraction of the diagonal does not couple two rows: rounding of a Galerkin product.

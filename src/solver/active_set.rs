@@ -11,7 +11,7 @@ use web_time::Instant;
 
 use super::decoupled::Decoupled;
 use super::{Candidate, ContactSolver, SolverError, SolverOptions, Statistics};
-use crate::discretization::Discretization;
+use crate::discretization::{Discretization, Displacement};
 use crate::multigrid::cholesky::NotFactored;
 use crate::qp::{Limits, Status};
 
@@ -61,7 +61,7 @@ impl ContactSolver for ActiveSet {
 
 /// Displacements over vertices and multipliers over unknowns for the last contact set.
 pub(super) struct Settled {
-    pub(super) displacement: [Vec<f64>; 2],
+    pub(super) displacement: Displacement,
     pub(super) multiplier: Vec<f64>,
     /// How often the contact set was repaired.
     pub(super) repairs: usize,

@@ -1,14 +1,14 @@
 //! What a solver returns, and what it may start from.
 
 use super::statistics::Statistics;
-use crate::discretization::Discretization;
+use crate::discretization::{Discretization, Displacement};
 use crate::qp::Answer;
 
 /// What a solver returns: displacements and multipliers that nobody has checked yet.
 #[derive(Debug, Clone)]
 pub struct Candidate {
     /// `[u1, u2]` over vertices, boundary values included.
-    pub displacement: [Vec<f64>; 2],
+    pub displacement: Displacement,
     /// `y_a = lambda_a |D_a|` over unknowns. Unit: force.
     pub multiplier: Vec<f64>,
     /// How it was found.
@@ -33,7 +33,7 @@ impl Candidate {
 #[derive(Debug, Clone)]
 pub struct StartingPoint {
     /// `[u1, u2]` over vertices.
-    pub displacement: [Vec<f64>; 2],
+    pub displacement: Displacement,
     /// `y_a = lambda_a |D_a|` over unknowns.
     pub multiplier: Vec<f64>,
 }
@@ -53,6 +53,6 @@ impl StartingPoint {
 }
 
 /// `x = (u1, u2)` at the interior vertices.
-pub(super) fn unknowns(d: &Discretization, displacement: &[Vec<f64>; 2]) -> Vec<f64> {
+pub(super) fn unknowns(d: &Discretization, displacement: &Displacement) -> Vec<f64> {
     displacement.iter().flat_map(|u| d.interior().iter().map(|&a| u[a])).collect()
 }

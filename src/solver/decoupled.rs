@@ -7,13 +7,10 @@
 //!
 //! one Poisson problem and one zero-obstacle problem, and back `u1 = (s + mu2 w) / M`, `u2 = (s - mu1 w) / M`.
 
-use crate::parallel::prelude::*;
-
-use crate::discretization::Discretization;
+use crate::discretization::{Discretization, Displacement};
 use crate::mesh::VertexKind;
-
-/// Vertices that are worked on together.
-const BLOCK: usize = 4096;
+use crate::parallel::BLOCK;
+use crate::parallel::prelude::*;
 
 /// The data of the two halves on a discretization, each with the matrix `K`: the gap's divided by `m`.
 pub(crate) struct Decoupled<'d> {
@@ -56,7 +53,7 @@ impl<'d> Decoupled<'d> {
     }
 
     /// `[u1, u2]` over vertices from `s` and `w` at the interior ones. `w >= 0` gives `u1 >= u2` to the last bit.
-    pub(crate) fn recombine(&self, s: &[f64], w: &[f64]) -> [Vec<f64>; 2] {
+    pub(crate) fn recombine(&self, s: &[f64], w: &[f64]) -> Displacement {
         let [mu1, mu2] = self.d.tension();
         let total = mu1 + mu2;
         let kind = self.d.mesh().kind();

@@ -10,7 +10,7 @@ use super::SolverOptions;
 use super::active_set::{guess, settle};
 use super::candidate::{Candidate, unknowns};
 use super::statistics::PolishReport;
-use crate::discretization::Discretization;
+use crate::discretization::{Discretization, Displacement};
 use crate::qp::{KktResiduals, QpProblem, Status};
 
 /// Linear solves for the gap. An accurate answer needs one to four; where the membranes touch without pushing, the contact
@@ -31,7 +31,7 @@ pub(super) fn polish(
     if limits.reached(0).is_some() {
         return None;
     }
-    let residual = |displacement: &[Vec<f64>; 2], multiplier: &[f64]| {
+    let residual = |displacement: &Displacement, multiplier: &[f64]| {
         KktResiduals::new(qp, &unknowns(d, displacement), multiplier).worst()
     };
     let polished = settle(d, guess(d, &candidate.displacement, &candidate.multiplier), &limits).ok()?;

@@ -7,7 +7,7 @@ use super::accuracy::{Bounded, Tolerance, solve_bounded};
 use super::prolongation::Fields;
 use super::{StudyError, mark};
 use crate::action::{ContactSolution, certify};
-use crate::discretization::Discretization;
+use crate::discretization::{Discretization, Displacement};
 use crate::estimate::{ErrorBound, ErrorBounds, energy_error, residual_indicators};
 use crate::mesh::{Bisection, Mesh};
 use crate::problem::{ContactProblem, Domain, ExactSolution};
@@ -96,7 +96,7 @@ pub struct Checkpoint {
     /// Of each refinement the triangles that were marked.
     pub marked: Vec<Vec<usize>>,
     /// `[u1, u2]` over vertices, as they were certified.
-    pub displacement: [Vec<f64>; 2],
+    pub displacement: Displacement,
     /// `lambda_h` over vertices, likewise.
     pub lambda: Vec<f64>,
     /// The tolerance within which they are certified.

@@ -1,13 +1,13 @@
 //! From the solution on one mesh to a start on the next.
 
 use crate::action::ContactSolution;
-use crate::discretization::Discretization;
+use crate::discretization::{Discretization, Displacement};
 use crate::solver::StartingPoint;
 
 /// A solution on its way to a refined mesh: displacements, and the action on the dual cells, over vertices.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Fields {
-    pub(super) displacement: [Vec<f64>; 2],
+    pub(super) displacement: Displacement,
     pub(super) lambda: Vec<f64>,
 }
 

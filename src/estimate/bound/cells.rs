@@ -1,16 +1,13 @@
 //! The bound triangle by triangle.
 
-use crate::parallel::prelude::*;
-
 use super::trace::Trace;
-use crate::discretization::Discretization;
+use crate::discretization::{Discretization, Displacement};
 use crate::estimate::MeasureError;
 use crate::fem::{ElementMoments, gradient};
 use crate::flux::WedgeFluxes;
 use crate::geometry::poincare;
-
-/// Triangles that are summed together.
-const BLOCK: usize = 4096;
+use crate::parallel::BLOCK;
+use crate::parallel::prelude::*;
 
 /// `int_{D_a cap K} phi_a = 22 |K| / 108`, and of the hat functions of the other two corners `7 |K| / 108` each.
 const OWN: f64 = 22.0 / 108.0;
@@ -19,7 +16,7 @@ const OTHER: f64 = 7.0 / 108.0;
 /// What the bound is made from.
 pub(super) struct Cells<'a> {
     pub(super) d: &'a Discretization,
-    pub(super) displacement: &'a [Vec<f64>; 2],
+    pub(super) displacement: &'a Displacement,
     /// `lt` over vertices.
     pub(super) lambda: &'a [f64],
     pub(super) fluxes: WedgeFluxes<'a>,

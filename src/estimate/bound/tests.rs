@@ -7,7 +7,7 @@ mod parts;
 mod rounding;
 
 use super::ErrorBound;
-use crate::discretization::Discretization;
+use crate::discretization::{Discretization, Displacement};
 use crate::estimate::norms::cut_rule;
 use crate::problem::{ContactProblem, Domain};
 
@@ -16,7 +16,7 @@ fn bound(
     problem: &ContactProblem,
     domain: &Domain,
     d: &Discretization,
-    displacement: &[Vec<f64>; 2],
+    displacement: &Displacement,
 ) -> ErrorBound {
     ErrorBound::new(problem, Some(domain), d, displacement).unwrap()
 }

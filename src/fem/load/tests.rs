@@ -1,7 +1,7 @@
 use std::collections::BTreeMap;
 
 use super::*;
-use crate::fem::moments::BLOCK;
+use crate::fem::moments::BATCH;
 use crate::mesh::samples::{irregular, renumbered, square};
 use crate::problem::Expression;
 
@@ -98,7 +98,7 @@ fn a_linear_load_by_hand() {
 fn expressions_and_closures_agree_to_the_last_bit() {
     // More points than one block.
     let mesh = irregular(30);
-    assert!(mesh.triangles().len() > 3 * BLOCK);
+    assert!(mesh.triangles().len() > 3 * BATCH);
     let expression: Expression = "if(x < 0.5, 10*x*y, -15) + y/3".parse().unwrap();
     let closure =
         |tenth: f64| Function::from_fn(move |x, y| if x < 0.5 { tenth * x * y } else { -15.0 } + y / 3.0);

@@ -1,6 +1,7 @@
 use super::*;
 use crate::mesh::samples::{irregular, renumbered, square, square_without};
 use crate::mesh::{Pattern, VertexKind, disk, rectangle};
+use crate::parallel::BLOCK;
 
 /// Rounding of a row: a few operations on numbers of order one.
 const ROUNDING: f64 = 1e-13;

@@ -1,7 +1,7 @@
 //! Equilibrium with element means, by the divergence itself; zero mean residuals for any load.
 
 use super::samples::{cubic_problem, loads, meshes, solve, touches_in_part};
-use crate::discretization::Discretization;
+use crate::discretization::{Discretization, Displacement};
 use crate::fem::{DEGREE_4, element_means};
 use crate::flux::{Flux, Reconstruction, Reconstructor};
 use crate::mesh::{Mesh, SubTriangulation, VertexKind};
@@ -17,7 +17,7 @@ const SEEN: f64 = 1e-2;
 struct MeanLoads {
     d: Discretization,
     /// `f_ih` on the triangles.
-    means: [Vec<f64>; 2],
+    means: Displacement,
     /// `int_K f_ih phi_a = |K| f_ih / 3`.
     integrals: [Vec<[f64; 3]>; 2],
 }

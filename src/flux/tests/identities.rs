@@ -1,7 +1,7 @@
 //! The identities of section 4.2 on every mesh, and faults that each of them sees.
 
 use super::samples::{Reconstructed, cubic_problem, loads, meshes, solve, touches_in_part};
-use crate::discretization::Discretization;
+use crate::discretization::{Discretization, Displacement};
 use crate::flux::{Flux, FluxDefects, Reconstruction, discrete_flux};
 use crate::mesh::samples::irregular;
 use crate::mesh::{Mesh, SubTriangulation, VertexKind};
@@ -105,7 +105,7 @@ fn signs_and_factors_matter() {
     for kind in Reconstruction::ALL {
         with_fluxes(&irregular(8), kind, |found| {
             let (u, lambda) = (found.solution.displacement(), found.solution.lambda());
-            let measure = |displacement: &[Vec<f64>; 2], lambda: &[f64], flux: &[Flux; 2]| {
+            let measure = |displacement: &Displacement, lambda: &[f64], flux: &[Flux; 2]| {
                 FluxDefects::new(&found.reconstructor, displacement, lambda, flux, kind)
             };
             let turned: Vec<f64> = lambda.iter().map(|lambda| -lambda).collect();

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::samples::{cubic_problem, loads, meshes, solve, touches_in_part};
 use crate::action::ContactSolution;
-use crate::discretization::Discretization;
+use crate::discretization::{Discretization, Displacement};
 use crate::fem::{DEGREE_4, element_means};
 use crate::flux::{Flux, Reconstruction, Reconstructor};
 use crate::mesh::samples::{Random, irregular};
@@ -39,7 +39,7 @@ fn both_sides(
     membrane: usize,
     f: &Function,
     exact: impl Fn([f64; 2]) -> f64,
-) -> [Vec<f64>; 2] {
+) -> Displacement {
     let (mesh, sub) = (d.mesh(), flux.sub_triangulation());
     let (means, sign) = (element_means(mesh, f).unwrap(), [-1.0, 1.0][membrane]);
     let [mut left, mut right] = [(); 2].map(|()| vec![0.0; mesh.points().len()]);
@@ -58,7 +58,7 @@ fn both_sides(
 }
 
 /// The largest difference over interior vertices, and the largest right side.
-fn compare(d: &Discretization, [left, right]: &[Vec<f64>; 2]) -> [f64; 2] {
+fn compare(d: &Discretization, [left, right]: &Displacement) -> [f64; 2] {
     let over = |value: &dyn Fn(usize) -> f64| d.interior().iter().map(|&a| value(a)).fold(0.0, f64::max);
     [over(&|a| (left[a] - right[a]).abs()), over(&|a| right[a].abs())]
 }

@@ -1,9 +1,11 @@
 //! Galerkin products: the matrix of a coarser level is `P' A P`.
 
-use crate::parallel::prelude::*;
+use std::ops::Range;
 
-use super::matrix::{BLOCK, Pattern, Rows, Values, assemble};
+use super::matrix::{Pattern, Rows, Values, assemble};
 use super::transfer::Transfer;
+use crate::parallel::blocks;
+use crate::parallel::prelude::*;
 
 /// Blocks that share a [`RowSum`].
 const BLOCKS: usize = 4;
@@ -82,9 +84,9 @@ pub(crate) fn galerkin(
     held: impl Fn(usize) -> bool + Sync,
 ) -> (Pattern, Values) {
     let coarse_rows = transfer.coarse_rows();
-    let block = |sum: &mut RowSum, block: usize| {
-        let mut rows = Rows::with_capacity(BLOCK);
-        for a in block * BLOCK..((block + 1) * BLOCK).min(coarse_rows) {
+    let of_block = |sum: &mut RowSum, block: Range<usize>| {
+        let mut rows = Rows::with_capacity(block.len());
+        for a in block {
             let mut diagonal = 0.0;
             if !held(a) {
                 sum.gather(fine, transfer, a, |_| false);
@@ -102,6 +104,6 @@ pub(crate) fn galerkin(
         rows
     };
     // Not a sum for each block: they are as long as all rows.
-    let blocks = (0..coarse_rows.div_ceil(BLOCK)).into_par_iter().with_min_len(BLOCKS);
-    assemble(blocks.map_init(|| RowSum::new(coarse_rows), block).collect())
+    let blocks = blocks(coarse_rows).into_par_iter().with_min_len(BLOCKS);
+    assemble(blocks.map_init(|| RowSum::new(coarse_rows), of_block).collect())
 }

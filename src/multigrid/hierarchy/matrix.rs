@@ -2,13 +2,10 @@
 
 use sprs::CsMat;
 
-use crate::parallel::prelude::*;
-
 use super::ordering::inverse;
 use crate::mesh::VertexKind;
-
-/// Rows that are made together.
-pub(crate) const BLOCK: usize = 8192;
+use crate::parallel::BLOCK;
+use crate::parallel::prelude::*;
 
 /// Where the off-diagonal entries of a matrix stand: compressed rows with 32-bit indices.
 #[derive(Debug, Clone, Default)]

@@ -5,10 +5,9 @@
 
 use std::ops::Range;
 
-use crate::parallel::prelude::*;
-
 use super::coloring::Coloring;
 use super::matrix::{Pattern, Values};
+use crate::parallel::prelude::*;
 
 /// The most rows of a run: their products stay in the nearest cache, and rows that change spoil no more than these.
 pub(crate) const LONGEST: usize = 32;

@@ -2,25 +2,22 @@
 
 use std::ops::Range;
 
+use super::genealogy::Mean;
+use crate::parallel::BLOCK;
 use crate::parallel::prelude::*;
 
-use super::genealogy::Mean;
-
-/// Rows that are gathered together.
-const BLOCK: usize = 4096;
-
-/// The prolongation `P` from a coarser level, by rows, and its transpose.
+/// The prolongation `P` from a coarser level and its transpose.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Transfer {
-    parents: Parents,
+    parents: Prolongation,
     children: Rows,
     /// The rows of the finer level that are the coarse vertices themselves.
     same_vertex: Vec<u32>,
 }
 
-/// The rows of the prolongation.
+/// `P`, by rows.
 #[derive(Debug, Clone)]
-enum Parents {
+enum Prolongation {
     /// The mean of two coarse vertices, of which the row is the midpoint; or one, named twice.
     Edges(Vec<[u32; 2]>),
     Weighted(Rows),
@@ -34,13 +31,13 @@ struct Rows {
     weight: Vec<f64>,
 }
 
-impl Default for Parents {
+impl Default for Prolongation {
     fn default() -> Self {
         Self::Edges(Vec::new())
     }
 }
 
-impl Parents {
+impl Prolongation {
     fn rows(&self) -> usize {
         match self {
             Self::Edges(ends) => ends.len(),
@@ -129,7 +126,7 @@ impl Rows {
 }
 
 impl Transfer {
-    fn new(same_vertex: Vec<u32>, parents: Parents) -> Self {
+    fn new(same_vertex: Vec<u32>, parents: Prolongation) -> Self {
         Self { children: parents.transposed(same_vertex.len()), parents, same_vertex }
     }
 
@@ -141,7 +138,7 @@ impl Transfer {
         index: Vec<u32>,
         weight: Vec<f64>,
     ) -> Self {
-        Self::new(same_vertex, Parents::Weighted(Rows { start, index, weight }))
+        Self::new(same_vertex, Prolongation::Weighted(Rows { start, index, weight }))
     }
 
     /// Each row takes the mean of its values at some coarse vertices.
@@ -153,14 +150,14 @@ impl Transfer {
             }
         }
         if means.iter().any(|mean| mean.vertices().len() > 2) {
-            return Self::new(same_vertex, Parents::Weighted(Rows::of_means(means)));
+            return Self::new(same_vertex, Prolongation::Weighted(Rows::of_means(means)));
         }
         let ends = |mean: &Mean| match *mean.vertices() {
             [a, b] => [a, b],
             [a, ..] => [a, a],
             [] => unreachable!("a mean is one of vertices"),
         };
-        Self::new(same_vertex, Parents::Edges(means.iter().map(ends).collect()))
+        Self::new(same_vertex, Prolongation::Edges(means.iter().map(ends).collect()))
     }
 
     /// The level is its own coarser level.
@@ -173,10 +170,10 @@ impl Transfer {
     pub(crate) fn with_coarse_order(mut self, order: &[u32], position: &[u32]) -> Self {
         let place = |a: &mut u32| *a = position[*a as usize];
         match &mut self.parents {
-            Parents::Edges(ends) => {
+            Prolongation::Edges(ends) => {
                 ends.par_iter_mut().with_min_len(BLOCK).for_each(|ends| ends.iter_mut().for_each(place));
             }
-            Parents::Weighted(rows) => rows.index.par_iter_mut().with_min_len(BLOCK).for_each(place),
+            Prolongation::Weighted(rows) => rows.index.par_iter_mut().with_min_len(BLOCK).for_each(place),
         }
         self.same_vertex = order.iter().map(|&a| self.same_vertex[a as usize]).collect();
         self.children = self.children.reordered(order);
@@ -213,11 +210,11 @@ impl Transfer {
     #[inline(always)]
     pub(crate) fn prolong(&self, i: usize, coarse: &[f64]) -> f64 {
         match &self.parents {
-            Parents::Edges(ends) => {
+            Prolongation::Edges(ends) => {
                 let [a, b] = ends[i];
                 0.5 * (coarse[a as usize] + coarse[b as usize])
             }
-            Parents::Weighted(rows) => rows.weighted(i).map(|(a, weight)| weight * coarse[a]).sum(),
+            Prolongation::Weighted(rows) => rows.weighted(i).map(|(a, weight)| weight * coarse[a]).sum(),
         }
     }
 
@@ -225,12 +222,12 @@ impl Transfer {
     #[inline(always)]
     pub(crate) fn spread(&self, i: usize, r: f64, coarse: &mut [f64]) {
         match &self.parents {
-            Parents::Edges(ends) => {
+            Prolongation::Edges(ends) => {
                 let [a, b] = ends[i];
                 coarse[a as usize] += 0.5 * r;
                 coarse[b as usize] += 0.5 * r;
             }
-            Parents::Weighted(rows) => rows.weighted(i).for_each(|(a, weight)| coarse[a] += weight * r),
+            Prolongation::Weighted(rows) => rows.weighted(i).for_each(|(a, weight)| coarse[a] += weight * r),
         }
     }
 

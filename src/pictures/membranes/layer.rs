@@ -1,10 +1,9 @@
 //! One surface of the oblique view with its depth, pixel by pixel.
 
-use crate::parallel::prelude::*;
-
 use super::scene::{Scene, TOUCHING};
 use super::view::View;
 use crate::geometry::barycentric_gradients;
+use crate::parallel::prelude::*;
 use crate::pictures::drawing::canvas::{Bitmap, FINE};
 use crate::pictures::drawing::color::{CONTACT, Rgb, mix};
 use crate::pictures::drawing::frame::Frame;

@@ -6,7 +6,7 @@ use crate::text::excerpt;
 
 /// How tightly an operator binds, loosest first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Level {
+pub(super) enum Precedence {
     Or,
     And,
     Not,
@@ -22,7 +22,7 @@ pub(super) enum Token {
     Number(f64),
     Name,
     /// Between two values; `+` and `-` also before one.
-    Operator(Level, Instruction),
+    Operator(Precedence, Instruction),
     Not,
     Open,
     Close,
@@ -50,26 +50,26 @@ const SYMBOLS: [(&str, Result<Token, &str>); 37] = [
     ("(", Ok(Token::Open)),
     (")", Ok(Token::Close)),
     (",", Ok(Token::Comma)),
-    ("+", Ok(Token::Operator(Level::Sum, Instruction::Add))),
-    ("-", Ok(Token::Operator(Level::Sum, Instruction::Subtract))),
+    ("+", Ok(Token::Operator(Precedence::Sum, Instruction::Add))),
+    ("-", Ok(Token::Operator(Precedence::Sum, Instruction::Subtract))),
     ("**", Err("^")),
-    ("*", Ok(Token::Operator(Level::Product, Instruction::Multiply))),
-    ("/", Ok(Token::Operator(Level::Product, Instruction::Divide))),
-    ("^", Ok(Token::Operator(Level::Power, Instruction::Power))),
-    ("<=", Ok(Token::Operator(Level::Comparison, Instruction::LessEqual))),
+    ("*", Ok(Token::Operator(Precedence::Product, Instruction::Multiply))),
+    ("/", Ok(Token::Operator(Precedence::Product, Instruction::Divide))),
+    ("^", Ok(Token::Operator(Precedence::Power, Instruction::Power))),
+    ("<=", Ok(Token::Operator(Precedence::Comparison, Instruction::LessEqual))),
     ("<>", Err("!=")),
-    ("<", Ok(Token::Operator(Level::Comparison, Instruction::Less))),
-    (">=", Ok(Token::Operator(Level::Comparison, Instruction::GreaterEqual))),
-    (">", Ok(Token::Operator(Level::Comparison, Instruction::Greater))),
-    ("==", Ok(Token::Operator(Level::Comparison, Instruction::Equal))),
+    ("<", Ok(Token::Operator(Precedence::Comparison, Instruction::Less))),
+    (">=", Ok(Token::Operator(Precedence::Comparison, Instruction::GreaterEqual))),
+    (">", Ok(Token::Operator(Precedence::Comparison, Instruction::Greater))),
+    ("==", Ok(Token::Operator(Precedence::Comparison, Instruction::Equal))),
     ("=<", Err("<=")),
     ("=>", Err(">=")),
     ("=", Err("==")),
-    ("!=", Ok(Token::Operator(Level::Comparison, Instruction::NotEqual))),
+    ("!=", Ok(Token::Operator(Precedence::Comparison, Instruction::NotEqual))),
     ("!", Ok(Token::Not)),
-    ("&&", Ok(Token::Operator(Level::And, Instruction::And))),
+    ("&&", Ok(Token::Operator(Precedence::And, Instruction::And))),
     ("&", Err("&&")),
-    ("||", Ok(Token::Operator(Level::Or, Instruction::Or))),
+    ("||", Ok(Token::Operator(Precedence::Or, Instruction::Or))),
     ("|", Err("abs(...)")),
     ("[", Err("(")),
     ("]", Err(")")),
@@ -134,8 +134,8 @@ impl<'a> Lexer<'a> {
     fn name(&mut self) -> Lexeme<'a> {
         let end = self.rest.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(self.rest.len());
         let token = match &self.rest[..end] {
-            "and" => Token::Operator(Level::And, Instruction::And),
-            "or" => Token::Operator(Level::Or, Instruction::Or),
+            "and" => Token::Operator(Precedence::And, Instruction::And),
+            "or" => Token::Operator(Precedence::Or, Instruction::Or),
             "not" => Token::Not,
             _ => Token::Name,
         };

@@ -5,7 +5,7 @@
 use std::f64::consts::PI;
 
 use super::error::ExpressionError;
-use super::lexer::{Level, Lexeme, Lexer, Token};
+use super::lexer::{Lexeme, Lexer, Precedence, Token};
 use super::program::{Builder, Instruction, Program};
 use crate::text::meant;
 
@@ -66,7 +66,7 @@ const VALUES: [(&str, Instruction); 3] =
 /// What waits for the values to its right.
 enum Pending {
     /// An operator; its left operand, where it has one, is already in the program.
-    Operation { level: Level, instruction: Instruction },
+    Operation { level: Precedence, instruction: Instruction },
     /// An opening parenthesis, of a group or of a call.
     Open { column: usize, call: Option<Call> },
 }
@@ -116,8 +116,10 @@ impl<'a> Parser<'a> {
                 Token::Open => self.pending.push(Pending::Open { column, call: None }),
                 Token::Operator(_, Instruction::Add) => {}
                 Token::Operator(_, Instruction::Subtract) => {
-                    self.pending
-                        .push(Pending::Operation { level: Level::Sign, instruction: Instruction::Negate });
+                    self.pending.push(Pending::Operation {
+                        level: Precedence::Sign,
+                        instruction: Instruction::Negate,
+                    });
                 }
                 Token::Not => self.negation(lexeme)?,
                 Token::Operator(..) | Token::Close | Token::Comma | Token::End => {
@@ -140,13 +142,13 @@ impl<'a> Parser<'a> {
                     return Ok(true);
                 }
                 Token::Comma => {
-                    self.complete_operations(Level::Or, column)?;
+                    self.complete_operations(Precedence::Or, column)?;
                     self.complete_argument(column)?;
                     return Ok(true);
                 }
                 Token::Close => self.close(column)?,
                 Token::End => {
-                    self.complete_operations(Level::Or, column)?;
+                    self.complete_operations(Precedence::Or, column)?;
                     return match self.pending.last() {
                         Some(&Pending::Open { column, .. }) => Err(ExpressionError::Unclosed { column }),
                         _ => Ok(false),
@@ -165,7 +167,7 @@ impl<'a> Parser<'a> {
     }
 
     /// Emits the operators since the last opening parenthesis that bind at least as tightly as `level`.
-    fn complete_operations(&mut self, level: Level, column: usize) -> Result<(), ExpressionError> {
+    fn complete_operations(&mut self, level: Precedence, column: usize) -> Result<(), ExpressionError> {
         while let Some(&Pending::Operation { level: waiting, instruction }) = self.pending.last()
             && waiting >= level
         {
@@ -177,17 +179,17 @@ impl<'a> Parser<'a> {
 
     fn binary(
         &mut self,
-        level: Level,
+        level: Precedence,
         instruction: Instruction,
         column: usize,
     ) -> Result<(), ExpressionError> {
         // Powers wait for each other, because they group to the right.
-        if level != Level::Power {
-            let tighter = if level == Level::Comparison { Level::Sum } else { level };
+        if level != Precedence::Power {
+            let tighter = if level == Precedence::Comparison { Precedence::Sum } else { level };
             self.complete_operations(tighter, column)?;
         }
-        if level == Level::Comparison
-            && matches!(self.pending.last(), Some(Pending::Operation { level: Level::Comparison, .. }))
+        if level == Precedence::Comparison
+            && matches!(self.pending.last(), Some(Pending::Operation { level: Precedence::Comparison, .. }))
         {
             return Err(ExpressionError::ChainedComparison { column });
         }
@@ -197,11 +199,12 @@ impl<'a> Parser<'a> {
 
     fn negation(&mut self, lexeme: Lexeme<'_>) -> Result<(), ExpressionError> {
         match self.pending.last() {
-            Some(Pending::Operation { level, .. }) if *level > Level::Not => {
+            Some(Pending::Operation { level, .. }) if *level > Precedence::Not => {
                 Err(ExpressionError::MisplacedNot { text: lexeme.shown(), column: lexeme.column })
             }
             _ => {
-                self.pending.push(Pending::Operation { level: Level::Not, instruction: Instruction::Not });
+                self.pending
+                    .push(Pending::Operation { level: Precedence::Not, instruction: Instruction::Not });
                 Ok(())
             }
         }
@@ -239,7 +242,7 @@ impl<'a> Parser<'a> {
     }
 
     fn close(&mut self, column: usize) -> Result<(), ExpressionError> {
-        self.complete_operations(Level::Or, column)?;
+        self.complete_operations(Precedence::Or, column)?;
         match self.pending.last() {
             None | Some(Pending::Operation { .. }) => return Err(ExpressionError::Unopened { column }),
             Some(Pending::Open { call: Some(_), .. }) => self.complete_argument(column)?,

@@ -5,7 +5,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 
 use sprs::CsMat;
 
-use crate::discretization::Discretization;
+use crate::discretization::{Discretization, Displacement};
 use crate::multigrid::cholesky::{Cholesky, NotFactored};
 use crate::qp::{Limits, Status};
 
@@ -174,11 +174,7 @@ fn fingerprint(active: &[bool]) -> u64 {
 }
 
 /// The vertices that touch, as displacements and multipliers have it.
-pub(in crate::solver) fn guess(
-    d: &Discretization,
-    [u1, u2]: &[Vec<f64>; 2],
-    multiplier: &[f64],
-) -> Vec<bool> {
+pub(in crate::solver) fn guess(d: &Discretization, [u1, u2]: &Displacement, multiplier: &[f64]) -> Vec<bool> {
     let scales = d.scales();
     let touches = |(&a, y): (&usize, &f64)| {
         let action = y / (d.dual_area()[a] * scales.force_density);

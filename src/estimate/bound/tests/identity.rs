@@ -1,7 +1,7 @@
 //! The computable side of the identity is the combined primal, dual and contact error.
 
 use super::{bound, cut_rule};
-use crate::discretization::Discretization;
+use crate::discretization::{Discretization, Displacement};
 use crate::estimate::tests::{exact, mesh, problem, solve};
 use crate::fem::{element_loads, gradient};
 use crate::flux::{Flux, Reconstruction, Reconstructor};
@@ -55,7 +55,7 @@ fn sums(
     exact: &ExactSolution,
     mesh: &Mesh,
     flux: &[Flux; 2],
-    u_h: &[Vec<f64>; 2],
+    u_h: &Displacement,
     lambda_h: &[f64],
 ) -> [f64; 2] {
     let rule = cut_rule(exact, DEPTH);

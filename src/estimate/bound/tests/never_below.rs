@@ -2,7 +2,7 @@
 
 use super::{ErrorBound, bound};
 use crate::action::certify;
-use crate::discretization::Discretization;
+use crate::discretization::{Discretization, Displacement};
 use crate::estimate::tests::{exact, mesh, problem, solve};
 use crate::estimate::{ErrorBounds, energy_error as measure};
 use crate::geometry::friedrichs;
@@ -19,7 +19,7 @@ const COARSE: f64 = 3.0;
 const ROUNDING: f64 = 1e-10;
 
 /// `|||u - u_h|||` of any displacements.
-fn energy_error(d: &Discretization, displacement: &[Vec<f64>; 2], exact: &ExactSolution) -> f64 {
+fn energy_error(d: &Discretization, displacement: &Displacement, exact: &ExactSolution) -> f64 {
     measure(d, displacement, exact).unwrap()
 }
 

@@ -1,8 +1,8 @@
 //! Pixels: everything is painted on a fine grid, and averaged down.
 
-use crate::parallel::prelude::*;
 use png::{BitDepth, ColorType, Encoder, EncodingError};
 
+use crate::parallel::prelude::*;
 use crate::pictures::drawing::canvas::{Bitmap, Canvas, FINE, Shape};
 use crate::pictures::drawing::color::{PAPER, Rgb, mix};
 use crate::pictures::drawing::font::Font;
