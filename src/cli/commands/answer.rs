@@ -67,7 +67,7 @@ pub(super) fn judge(
 }
 
 fn statistics() -> Statistics {
-    Statistics { status: Status::Unknown, ..Statistics::of(NAME) }
+    Statistics::of(NAME, Status::Unknown)
 }
 
 /// What would make an answer certify: the multipliers with the other sign, the polish, both; else accuracy.

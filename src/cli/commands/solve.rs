@@ -133,9 +133,8 @@ fn too_late(
 ) -> impl Fn() -> Failure + Send + Sync + 'static {
     let settings = &setup.case.solver;
     let statistics = Statistics {
-        status: Status::TimeLimit,
         solve_seconds: settings.time_limit.map_or(0.0, TimeLimit::seconds),
-        ..Statistics::of(settings.backend.as_str())
+        ..Statistics::of(settings.backend.as_str(), Status::TimeLimit)
     };
     let rejected = Rejected::without_result(statistics);
     let tolerance = settings.tolerance.or_default();
