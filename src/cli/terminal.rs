@@ -28,28 +28,9 @@ pub(crate) fn fixed(value: f64, decimals: usize) -> String {
     if moderate { format!("{value:.decimals$}") } else { format!("{value:.0$e}", decimals - 4) }
 }
 
-/// A number of bytes or things, in groups of three digits.
-pub(crate) fn grouped(n: usize) -> String {
-    let digits = n.to_string();
-    let mut text = String::new();
-    for (k, digit) in digits.chars().enumerate() {
-        if k > 0 && (digits.len() - k).is_multiple_of(3) {
-            text.push(',');
-        }
-        text.push(digit);
-    }
-    text
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn digits_are_grouped_from_the_right() {
-        let texts: Vec<String> = [0, 999, 1000, 65_536, 1_050_625].into_iter().map(grouped).collect();
-        assert_eq!(texts, ["0", "999", "1,000", "65,536", "1,050,625"]);
-    }
 
     #[test]
     fn numbers_of_all_sizes_show_digits() {

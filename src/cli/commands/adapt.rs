@@ -20,12 +20,13 @@ use crate::cli::run::pictures::Pictures;
 use crate::cli::run::progress::Progress;
 use crate::cli::run::setup::{Setup, options, solver, too_early, unused_groups};
 use crate::cli::run::watch::Watch;
-use crate::cli::terminal::{grouped, print};
+use crate::cli::terminal::print;
 use crate::estimate::LoadWarning;
 use crate::mesh::{DualMesh, Mesh, MeshError, SubTriangulation};
 use crate::output::{Seconds, Summary, read_checkpoint, write_checkpoint};
 use crate::pictures::{MeshPicture, RatesPicture, Series, render_rates, render_triangulation};
 use crate::study::{AdaptiveLevel, AdaptiveStudy, StudyError, exponent};
+use crate::text::grouped;
 
 /// The slope of the best possible rate: the error falls like the root of the number of vertices.
 const OPTIMAL: [f64; 1] = [-0.5];

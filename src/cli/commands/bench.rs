@@ -17,12 +17,13 @@ use crate::cli::run::pictures::Pictures;
 use crate::cli::run::progress::Progress;
 use crate::cli::run::setup::{Setup, check_refinements, solver};
 use crate::cli::run::watch::Watch;
-use crate::cli::terminal::{grouped, print};
+use crate::cli::terminal::print;
 use crate::discretization::Discretization;
 use crate::mesh::{MAX_VERTICES, Mesh};
 use crate::problem::ContactProblem;
 use crate::solver::SolverOptions;
 use crate::study::comparison::{Comparison, Place, Row, SQUARE, square_mesh, square_problem};
+use crate::text::grouped;
 use files::{read_rows, write_results, write_rows};
 
 /// Where results go without a case file and without `--out`.

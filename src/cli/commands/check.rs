@@ -8,13 +8,14 @@ use crate::cli::failure::Failure;
 use crate::cli::run::progress::Progress;
 use crate::cli::run::setup::{Setup, options, solver, unused_groups};
 use crate::cli::run::watch::Watch;
-use crate::cli::terminal::{fixed, grouped, print};
+use crate::cli::terminal::{fixed, print};
 use crate::discretization::Discretization;
 use crate::fem::element_loads;
 use crate::flux::{FluxDefects, Reconstruction, Reconstructor};
 use crate::mesh::SubTriangulation;
 use crate::problem::ContactProblem;
 use crate::study::Tolerance;
+use crate::text::grouped;
 
 /// The second line above a result that nobody has polished.
 const AS_IT_IS: &str = "as it is";

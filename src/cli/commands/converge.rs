@@ -15,10 +15,11 @@ use crate::cli::run::pictures::Pictures;
 use crate::cli::run::progress::Progress;
 use crate::cli::run::setup::{Setup, check_refinements, options, solver, too_early, unused_groups};
 use crate::cli::run::watch::Watch;
-use crate::cli::terminal::{grouped, print};
+use crate::cli::terminal::print;
 use crate::pictures::{RatesPicture, Series, render_rates};
 use crate::qp::TimeLimit;
 use crate::study::{ConvergenceStudy, LevelErrors, MEASURES, fitted_rate, markdown, rate};
+use crate::text::grouped;
 
 /// The slopes to compare with: those of the theory, and that of a discontinuous action in L2.
 const SLOPES: [f64; 4] = [0.5, 1.0, 1.5, 2.0];

@@ -16,7 +16,7 @@ use crate::cli::run::pictures::Pictures;
 use crate::cli::run::progress::Progress;
 use crate::cli::run::setup::{Setup, options, solver, too_early, unused_groups};
 use crate::cli::run::watch::Watch;
-use crate::cli::terminal::{fields, fixed, grouped, print};
+use crate::cli::terminal::{fields, fixed, print};
 use crate::discretization::Discretization;
 use crate::fem::element_loads;
 use crate::flux::{Reconstruction, Reconstructor};
@@ -26,6 +26,7 @@ use crate::pictures::{MeshPicture, render_mesh};
 use crate::qp::{Status, TimeLimit};
 use crate::solver::{PolishReport, Statistics};
 use crate::study::{AccuracyError, Bounded, solve_bounded};
+use crate::text::grouped;
 
 /// What an interrupted run has to say.
 const UNTOUCHED: &str = "it is as it was";

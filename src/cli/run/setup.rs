@@ -10,7 +10,6 @@ use super::progress::Progress;
 use crate::cli::args::CaseArguments;
 use crate::cli::case::{BackendName, CaseFile, CaseId, MeshSource, SolverSettings};
 use crate::cli::failure::Failure;
-use crate::cli::terminal::grouped;
 use crate::discretization::Discretization;
 use crate::formats::gmsh::{PhysicalGroup, parse};
 use crate::mesh::{GmshMesh, MAX_VERTICES, MeshFamily, ReadError, estimated_vertices, generate, gmsh_nodes};
@@ -18,7 +17,7 @@ use crate::output::Seconds;
 #[cfg(any(feature = "clarabel", feature = "osqp"))]
 use crate::solver::QpSolver;
 use crate::solver::{ActiveSet, Auto, ContactSolver, Multigrid, SolverOptions};
-use crate::text::excerpt;
+use crate::text::{excerpt, grouped};
 
 /// The case and its meshes.
 pub(crate) struct Setup {

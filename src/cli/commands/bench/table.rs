@@ -4,8 +4,8 @@ use std::path::Path;
 
 use super::files::solver_name;
 use crate::cli::run::files::{ROWS, ROWS_TABLE};
-use crate::cli::terminal::grouped;
 use crate::study::comparison::{Row, curves, slope};
+use crate::text::grouped;
 
 /// Letters of a solver's name, and of a status.
 const NAME: usize = 22;
