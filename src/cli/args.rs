@@ -9,6 +9,7 @@ use clap_complete::Shell;
 use super::case::BackendName;
 use crate::qp::TimeLimit;
 use crate::study::Tolerance;
+use crate::text::grouped;
 
 /// Where results go when no folder is named: a folder of this one, called like the case file.
 const OUTPUT: &str = "out";
@@ -134,7 +135,7 @@ pub(crate) struct AdaptArguments {
     #[arg(long, value_name = "T", default_value = "0.01", value_parser = tolerance, allow_negative_numbers = true)]
     pub(crate) tolerance: f64,
     /// Most vertices of a mesh
-    #[arg(long, value_name = "N", default_value = "1000000", value_parser = at_least(3))]
+    #[arg(long, value_name = "N", default_value = "1,000,000", value_parser = at_least(3))]
     pub(crate) max_vertices: usize,
     /// Most seconds of this run
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
@@ -309,9 +310,15 @@ fn refinements(text: &str) -> Result<u32, String> {
 
 fn at_least(least: usize) -> impl Fn(&str) -> Result<usize, String> + Clone + Send + Sync + 'static {
     move |text| {
-        let value = text.trim().parse().ok().filter(|&value| value >= least);
+        let value = count(text.trim()).filter(|&value| value >= least);
         value.ok_or_else(|| format!("choose a whole number, at least {least}"))
     }
+}
+
+/// A whole number, also in groups of three digits as the program prints it.
+fn count(text: &str) -> Option<usize> {
+    let in_groups = || text.replace(',', "").parse().ok().filter(|&value| grouped(value) == text);
+    text.parse().ok().or_else(in_groups)
 }
 
 fn seconds(text: &str) -> Result<TimeLimit, String> {
@@ -338,4 +345,20 @@ pub(crate) fn one_line(error: &clap::Error, command: Option<&str>) -> String {
     let known = |name: &&str| Arguments::command().find_subcommand(name).is_some();
     let command = command.filter(known).map_or_else(String::new, |name| format!("{name} "));
     format!("{message}; see `membranes {command}--help`")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_are_read_as_they_are_printed() {
+        assert_eq!(
+            ["0", "1000000", "1,000,000", "12,345"].map(count),
+            [0, 1_000_000, 1_000_000, 12_345].map(Some)
+        );
+        assert_eq!(["1,5", "1,0000", ",100", "1,000,", "-1", "1.5", "", ","].map(count), [None; 8]);
+        assert_eq!(at_least(3)("1,000"), Ok(1000));
+        assert_eq!(at_least(3)("2"), Err("choose a whole number, at least 3".into()));
+    }
 }

@@ -8,6 +8,7 @@ use super::{
 };
 use crate::discretization::Discretization;
 use crate::qp::Status;
+use crate::text::grouped;
 
 /// Up to as many unknowns of each membrane the active set method takes no longer than multigrid, and is exact to rounding.
 const SMALL: usize = 2000;
@@ -64,7 +65,8 @@ impl PreparedSolver for PreparedAuto<'_> {
             (self.multigrid_or_active_set(options)?, "many")
         };
         let stalled = if size == "many" && self.multigrid.is_none() { "; multigrid stalled" } else { "" };
-        let reason = format!("by auto: {size} unknowns ({unknowns} a membrane), {hierarchy}{stalled}");
+        let reason =
+            format!("by auto: {size} unknowns ({} a membrane), {hierarchy}{stalled}", grouped(unknowns));
         candidate.statistics.choice = Some(reason);
         Ok(candidate)
     }

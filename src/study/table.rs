@@ -1,6 +1,7 @@
 //! The figures of a convergence study and their rates.
 
 use super::exponent;
+use crate::text::grouped;
 
 /// One level: a mesh and the errors of the solution on it. Written as a row of `summary.csv`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -94,7 +95,7 @@ pub fn markdown(levels: &[LevelErrors]) -> String {
     text += &"---:|---:|".repeat(MEASURES.len());
     text += "---:|\n";
     for (k, level) in levels.iter().enumerate() {
-        text += &format!("| {} | {:.2e} |", level.vertices, level.h);
+        text += &format!("| {} | {:.2e} |", grouped(level.vertices), level.h);
         for measure in MEASURES {
             let rate = k.checked_sub(1).and_then(|before| rate(measure, &levels[before], level));
             let rate = rate.map_or_else(String::new, |rate| format!("{rate:.2}"));

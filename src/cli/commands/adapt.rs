@@ -331,7 +331,7 @@ fn table(
             level.h_min,
             level.bound,
             percent(level.relative_bound),
-            level.iterations,
+            grouped(level.iterations),
             level.solve_seconds + level.bound_seconds,
         );
     }

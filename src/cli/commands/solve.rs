@@ -16,7 +16,7 @@ use crate::cli::run::pictures::Pictures;
 use crate::cli::run::progress::Progress;
 use crate::cli::run::setup::{Setup, options, solver, too_early, unused_groups};
 use crate::cli::run::watch::Watch;
-use crate::cli::terminal::{fields, fixed, print};
+use crate::cli::terminal::{fields, fixed, print, wrapped};
 use crate::discretization::Discretization;
 use crate::fem::element_loads;
 use crate::flux::{Reconstruction, Reconstructor};
@@ -259,7 +259,8 @@ fn table(
         ),
         ("error", error_line(summary, unloaded)),
         ("guaranteed", guarantee(summary)),
-        ("warning", summary.warnings.join("; ")),
+        ("warning", summary.warnings.first().cloned().unwrap_or_default()),
+        ("warning", summary.warnings.get(1).cloned().unwrap_or_default()),
         ("energy", number(summary.energy)),
         (
             "contact",
@@ -286,7 +287,7 @@ fn table(
         ("files", format!("{}/{{{files}}}", folder.display())),
     ];
     let rows: Vec<_> = rows.into_iter().filter(|(_, value)| !value.is_empty()).collect();
-    format!("{}\n{}", summary.title, fields(&rows))
+    format!("{}\n{}", wrapped(&summary.title, 2), fields(&rows))
 }
 
 /// What of a residual that is larger than the tolerance is more than rounding.
@@ -301,7 +302,7 @@ fn solver_line(summary: &Summary) -> String {
     let Summary { backend, status, iterations, level_iterations, .. } = summary;
     let levels = level_iterations.len();
     let on_levels = if levels > 1 { format!(" on the finest of {levels} levels") } else { String::new() };
-    format!("{backend}: {status} in {iterations} iterations{on_levels}")
+    format!("{backend}: {status} in {} iterations{on_levels}", grouped(*iterations))
 }
 
 /// What the bound rests on.

@@ -78,12 +78,12 @@ impl Setup {
 /// The groups that a run does not use, in one line for the terminal; nothing where there are none.
 pub(crate) fn unused_groups(groups: &[PhysicalGroup]) -> String {
     /// Names are left out where the line would become wider than 80 columns.
-    const WIDEST: usize = 80 - ", and 1000 more".len();
+    const WIDEST: usize = 80 - ", and 1,000 more".len();
     let mut line = String::from("  physical groups not used:");
     for (k, group) in groups.iter().enumerate() {
         let name = excerpt(&group.to_string());
         if k > 0 && line.chars().count() + 2 + name.chars().count() > WIDEST {
-            return format!("{line}, and {} more\n", groups.len() - k);
+            return format!("{line}, and {} more\n", grouped(groups.len() - k));
         }
         line += if k > 0 { ", " } else { " " };
         line += &name;

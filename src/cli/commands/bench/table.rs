@@ -8,7 +8,7 @@ use crate::study::comparison::{Row, curves, slope};
 use crate::text::grouped;
 
 /// Letters of a solver's name, and of a status.
-const NAME: usize = 22;
+const NAME: usize = 20;
 const STATUS: usize = 17;
 
 /// The rows mesh by mesh, and the fitted slopes.
@@ -23,7 +23,7 @@ pub(super) fn table(title: &str, rows: &[Row], (folder, pictures): (&Path, &[&st
     meshes.sort_by_key(|&(problem, vertices)| (first_of(rows, problem), vertices));
     for &of in &meshes {
         let on_mesh = || rows.iter().filter(|row| mesh(row) == of);
-        let n = on_mesh().find_map(|row| row.n).map_or_else(String::new, |n| format!(", n = {n}"));
+        let n = on_mesh().find_map(|row| row.n).map_or_else(String::new, |n| format!(", n = {}", grouped(n)));
         text += &format!("\n  {}{n}: {} vertices\n", of.0, grouped(of.1));
         text +=
             &line(&["solver", "seconds", "work units", "residual", "iter.", "certified"].map(String::from));
@@ -60,14 +60,14 @@ fn cells(row: &Row) -> [String; 6] {
         shown(row.total_seconds, |seconds| format!("{seconds:.4}")),
         shown(row.work_units, |units| grouped(units.round() as usize)),
         shown(row.residual, |residual| format!("{residual:.1e}")),
-        row.iterations.map_or_else(|| "-".into(), |count| count.to_string()),
+        row.iterations.map_or_else(|| "-".into(), grouped),
         if row.certified { "yes".into() } else { cut(&format!("no: {}", row.status), STATUS) },
     ]
 }
 
 /// At most 80 letters.
 fn line([solver, seconds, units, residual, iterations, certified]: &[String; 6]) -> String {
-    format!("  {solver:NAME$} {seconds:>9} {units:>11} {residual:>8} {iterations:>5}  {certified}\n")
+    format!("  {solver:NAME$} {seconds:>9} {units:>11} {residual:>8} {iterations:>7}  {certified}\n")
 }
 
 /// A text on one line, ended by an ellipsis if it is longer than `width` letters.
