@@ -49,7 +49,7 @@ pub(crate) enum Command {
     Check(CheckArguments),
     /// Measure errors and rates on finer meshes, for a built-in case
     Converge(ConvergeArguments),
-    /// Refine where the error is, to a guaranteed accuracy
+    /// Refine where the error is, until its bound is small enough
     Adapt(AdaptArguments),
     /// Time the solvers side by side, on a built-in family or a case
     Bench(BenchArguments),
@@ -128,10 +128,15 @@ pub(crate) struct ConvergeArguments {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = "\
+The bound of the error in the energy norm is guaranteed up to the quadrature of
+the loads. --tolerance is relative to the energy norm of the exact solution; how
+accurately each level is solved, the case file says.
+A run that was stopped goes on where it was when the same command is given again.")]
 pub(crate) struct AdaptArguments {
     #[command(flatten)]
     pub(crate) case: CaseArguments,
-    /// Guaranteed relative error to reach
+    /// Largest relative bound of the error, see below
     #[arg(long, value_name = "T", default_value = "0.01", value_parser = tolerance, allow_negative_numbers = true)]
     pub(crate) tolerance: f64,
     /// Most vertices of a mesh

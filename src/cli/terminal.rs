@@ -37,10 +37,13 @@ pub(crate) fn wrapped(text: &str, indent: usize) -> String {
     lines
 }
 
-/// Lines of a name and a value, aligned; values that are longer than a line go on below themselves.
+/// Lines of a name and a value, aligned; values that are longer than a line go on below themselves. Each line of a value has the
+/// name before it, and a value that is empty has no line.
 pub(crate) fn fields(rows: &[(&str, String)]) -> String {
-    let width = rows.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
-    rows.iter().map(|(name, value)| wrapped(&format!("  {name:width$}  {value}"), width + 4) + "\n").collect()
+    let width =
+        rows.iter().filter(|(_, value)| !value.is_empty()).map(|(name, _)| name.len()).max().unwrap_or(0);
+    let lines = rows.iter().flat_map(|(name, value)| value.lines().map(move |line| (name, line)));
+    lines.map(|(name, line)| wrapped(&format!("  {name:width$}  {line}"), width + 4) + "\n").collect()
 }
 
 /// A line below a table, indented; what is longer than 80 columns goes on indented further.
@@ -68,6 +71,7 @@ mod tests {
     #[test]
     fn fields_are_aligned() {
         assert_eq!(fields(&[("a", "1".into()), ("long", "2".into())]), "  a     1\n  long  2\n");
+        assert_eq!(fields(&[("a", "1\n2".into()), ("none", String::new())]), "  a  1\n  a  2\n");
         let value = "seven letters ".repeat(6);
         let expected = format!("  a  {}seven\n     letters\n", "seven letters ".repeat(5));
         assert_eq!(fields(&[("a", value.trim_end().into())]), expected);

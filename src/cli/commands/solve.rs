@@ -259,8 +259,7 @@ fn table(
         ),
         ("error", error_line(summary, unloaded)),
         ("guaranteed", guarantee(summary)),
-        ("warning", summary.warnings.first().cloned().unwrap_or_default()),
-        ("warning", summary.warnings.get(1).cloned().unwrap_or_default()),
+        ("warning", summary.warnings.join("\n")),
         ("energy", number(summary.energy)),
         (
             "contact",
@@ -286,7 +285,6 @@ fn table(
         ("left out", left_out_line(&summary.left_out)),
         ("files", format!("{}/{{{files}}}", folder.display())),
     ];
-    let rows: Vec<_> = rows.into_iter().filter(|(_, value)| !value.is_empty()).collect();
     format!("{}\n{}", wrapped(&summary.title, 2), fields(&rows))
 }
 

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::files::solver_name;
 use crate::cli::run::files::{ROWS, ROWS_TABLE};
+use crate::cli::terminal::{note, wrapped};
 use crate::study::comparison::{Row, curves, slope};
 use crate::text::grouped;
 
@@ -13,7 +14,7 @@ const STATUS: usize = 17;
 
 /// The rows mesh by mesh, and the fitted slopes.
 pub(super) fn table(title: &str, rows: &[Row], (folder, pictures): (&Path, &[&str])) -> String {
-    let mut text = format!("{title}\n");
+    let mut text = wrapped(title, 2) + "\n";
     let mut meshes: Vec<(&str, usize)> = Vec::new();
     for row in rows {
         if !meshes.contains(&mesh(row)) {
@@ -24,7 +25,8 @@ pub(super) fn table(title: &str, rows: &[Row], (folder, pictures): (&Path, &[&st
     for &of in &meshes {
         let on_mesh = || rows.iter().filter(|row| mesh(row) == of);
         let n = on_mesh().find_map(|row| row.n).map_or_else(String::new, |n| format!(", n = {}", grouped(n)));
-        text += &format!("\n  {}{n}: {} vertices\n", of.0, grouped(of.1));
+        text += "\n";
+        text += &note(&format!("{}{n}: {} vertices", of.0, grouped(of.1)));
         text +=
             &line(&["solver", "seconds", "work units", "residual", "iter.", "certified"].map(String::from));
         for row in on_mesh() {
@@ -40,7 +42,7 @@ pub(super) fn table(title: &str, rows: &[Row], (folder, pictures): (&Path, &[&st
         text += &format!("  {:NAME$} {exponent:>9}{problem}\n", cut(&solver_name(&curve), NAME));
     }
     let files = [&[ROWS, ROWS_TABLE], pictures].concat().join(", ");
-    text + &format!("  files: {}/{{{files}}}\n", folder.display())
+    text + &note(&format!("files: {}/{{{files}}}", folder.display()))
 }
 
 /// What tells meshes apart; other programs need not know `n`.
