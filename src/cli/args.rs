@@ -180,6 +180,9 @@ pub(crate) struct BenchArguments {
     /// Measure nothing, show the rows of --merge
     #[arg(long, requires = "merge")]
     pub(crate) no_run: bool,
+    /// Most GiB of memory [default: all that is free]
+    #[arg(long, value_name = "GIB", value_parser = positive, allow_negative_numbers = true)]
+    pub(crate) memory_limit: Option<f64>,
     #[command(flatten)]
     pub(crate) output: OutputArguments,
     #[command(flatten)]
