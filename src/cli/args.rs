@@ -45,7 +45,7 @@ pub(crate) struct Arguments {
 pub(crate) enum Command {
     /// Solve a case and write solution.vtu, summary.json, membranes.png
     Solve(SolveArguments),
-    /// Show every residual, from every backend or of an answer
+    /// Show all residuals, of every solver or of a given answer
     Check(CheckArguments),
     /// Measure errors and rates on finer meshes, for a built-in case
     Converge(ConvergeArguments),
@@ -77,13 +77,13 @@ pub(crate) struct SolveArguments {
     pub(crate) output: OutputArguments,
     #[command(flatten)]
     pub(crate) pictures: PictureArguments,
-    /// Most seconds of this run; see below
+    /// Time limit of this run in seconds, see below
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) time_limit: Option<TimeLimit>,
     /// Largest relative residual, or auto
     #[arg(long, value_name = "T", value_parser = tolerance_or_auto, allow_negative_numbers = true)]
     pub(crate) tolerance: Option<Tolerance>,
-    /// Leave the backend's answer as it is
+    /// Do not polish the answer of a backend
     #[arg(long)]
     pub(crate) no_polish: bool,
     /// Also write dual.vtu, flux.vtu, mesh.png
@@ -104,7 +104,7 @@ pub(crate) struct CheckArguments {
     /// Replace results of another case
     #[arg(long, requires = "out")]
     pub(crate) overwrite: bool,
-    /// Largest relative residual, not the case file's
+    /// Largest relative residual [default: the case file's]
     #[arg(long, value_name = "T", value_parser = tolerance, allow_negative_numbers = true)]
     pub(crate) tolerance: Option<f64>,
 }
@@ -113,10 +113,10 @@ pub(crate) struct CheckArguments {
 pub(crate) struct ConvergeArguments {
     #[command(flatten)]
     pub(crate) case: CaseArguments,
-    /// Meshes, each refined once more
+    /// Number of meshes, from coarse to fine
     #[arg(long, value_name = "N", default_value = "5", value_parser = at_least(1), allow_negative_numbers = true)]
     pub(crate) levels: usize,
-    /// Most seconds of this run
+    /// Time limit of this run in seconds
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) time_limit: Option<TimeLimit>,
     #[arg(long, value_name = "NAME", help = SOLVERS)]
@@ -132,17 +132,17 @@ pub(crate) struct ConvergeArguments {
 The bound of the error in the energy norm is guaranteed up to the quadrature of
 the loads. --tolerance is relative to the energy norm of the exact solution; how
 accurately each level is solved, the case file says.
-A run that was stopped goes on where it was when the same command is given again.")]
+The same command goes on where a run has stopped.")]
 pub(crate) struct AdaptArguments {
     #[command(flatten)]
     pub(crate) case: CaseArguments,
-    /// Largest relative bound of the error, see below
+    /// Relative error bound to reach
     #[arg(long, value_name = "T", default_value = "0.01", value_parser = tolerance, allow_negative_numbers = true)]
     pub(crate) tolerance: f64,
-    /// Most vertices of a mesh
+    /// Largest number of vertices
     #[arg(long, value_name = "N", default_value = "1,000,000", value_parser = at_least(3))]
     pub(crate) max_vertices: usize,
-    /// Most seconds of this run
+    /// Time limit of this run in seconds
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) time_limit: Option<TimeLimit>,
     #[arg(long, value_name = "NAME", help = SOLVERS)]
@@ -154,7 +154,9 @@ pub(crate) struct AdaptArguments {
 }
 
 #[derive(Debug, Args)]
-#[command(after_help = "Without a case file, results go into out/bench.")]
+#[command(after_help = "\
+Without a case file, results go into out/bench. Where a solver needs more memory
+than there is, its row says memory_limit in place of a time.")]
 pub(crate) struct BenchArguments {
     /// A case, refined level by level [default: a family on the square]
     #[arg(value_name = "CASE.toml", conflicts_with = "sizes")]
@@ -162,32 +164,32 @@ pub(crate) struct BenchArguments {
     /// Meshes of N x N cells
     #[arg(long, value_name = "N,...", value_delimiter = ',', default_value = "64,128,256", value_parser = at_least(2))]
     pub(crate) sizes: Vec<usize>,
-    /// Meshes of the case, each one finer
+    /// Number of meshes, from coarse to fine
     #[arg(long, value_name = "N", default_value = "4", value_parser = at_least(1), requires = "case")]
     pub(crate) levels: usize,
-    /// Solvers [default: all of this build]
+    /// Solvers to compare [default: all of this build]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     pub(crate) solvers: Vec<BackendName>,
-    /// Seconds a solve may take
+    /// Time limit of each solve in seconds
     #[arg(long, value_name = "S", default_value = "60", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) time_limit: TimeLimit,
-    /// Largest relative residual, not the case file's
+    /// Largest relative residual [default: the case file's]
     #[arg(long, value_name = "T", value_parser = tolerance, allow_negative_numbers = true)]
     pub(crate) tolerance: Option<f64>,
-    /// Also show rows of such a bench.csv; repeatable
+    /// Also show the rows of this bench.csv; repeatable
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) merge: Vec<PathBuf>,
     /// Measure nothing, show the rows of --merge
     #[arg(long, requires = "merge")]
     pub(crate) no_run: bool,
-    /// Most GiB of memory [default: all that is free]
+    /// Memory limit in GiB [default: all that is free]
     #[arg(long, value_name = "GIB", value_parser = positive, allow_negative_numbers = true)]
     pub(crate) memory_limit: Option<f64>,
     #[command(flatten)]
     pub(crate) output: OutputArguments,
     #[command(flatten)]
     pub(crate) pictures: PictureArguments,
-    /// No output on the terminal but errors
+    /// Print nothing but errors
     #[arg(long, short)]
     pub(crate) quiet: bool,
 }
@@ -225,7 +227,7 @@ pub(crate) struct OutputArguments {
     /// Folder for the results [default: out/CASE]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Replace results of another case or settings
+    /// Replace results of another case or other settings
     #[arg(long)]
     pub(crate) overwrite: bool,
 }
@@ -235,7 +237,7 @@ pub(crate) struct PictureArguments {
     /// Write no pictures
     #[arg(long)]
     pub(crate) no_picture: bool,
-    /// Their formats: png, svg, pdf
+    /// Picture formats: png, svg, pdf
     #[arg(
         long = "pictures",
         value_name = "F,...",
@@ -282,10 +284,10 @@ pub(crate) struct CaseArguments {
     /// Further uniform refinements of the mesh
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = refinements, allow_negative_numbers = true)]
     pub(crate) refine: u32,
-    /// Most GiB of memory [default: all that is free]
+    /// Memory limit in GiB [default: all that is free]
     #[arg(long, value_name = "GIB", value_parser = positive, allow_negative_numbers = true)]
     pub(crate) memory_limit: Option<f64>,
-    /// No output on the terminal but errors
+    /// Print nothing but errors
     #[arg(long, short)]
     pub(crate) quiet: bool,
 }

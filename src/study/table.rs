@@ -23,7 +23,7 @@ pub struct LevelErrors {
     pub l2: f64,
     /// `sqrt(sum_i mu_i |u_i - u_ih|_{H1}^2)`.
     pub energy: f64,
-    /// The guaranteed bound of `energy`.
+    /// The bound of `energy`, guaranteed up to the quadrature of the loads.
     pub bound: f64,
     /// The largest error of both displacements at a vertex.
     pub nodal: f64,
@@ -46,7 +46,7 @@ pub struct LevelErrors {
 }
 
 impl LevelErrors {
-    /// The guaranteed bound over the energy error.
+    /// The bound over the energy error.
     pub fn effectivity(&self) -> f64 {
         self.bound / self.energy
     }
@@ -101,7 +101,9 @@ pub fn markdown(levels: &[LevelErrors]) -> String {
             let rate = rate.map_or_else(String::new, |rate| format!("{rate:.2}"));
             text += &format!(" {:.2e} | {rate} |", (measure.of)(level));
         }
-        text += &format!(" {:.2} |\n", level.effectivity());
+        // Where there is no error, there is no index.
+        let effectivity = Some(level.effectivity()).filter(|index| index.is_finite());
+        text += &format!(" {} |\n", effectivity.map_or_else(String::new, |index| format!("{index:.2}")));
     }
     text += "| all levels | |";
     for measure in MEASURES {

@@ -222,7 +222,8 @@ fn stage(levels: &[AdaptiveLevel]) -> String {
         None => "level 0".into(),
         Some(last) => {
             let vertices = grouped(last.vertices);
-            format!("level {}, after {} on {vertices} vertices", levels.len(), percent(last.relative_bound))
+            let bound = percent(last.relative_bound);
+            format!("level {}, after a bound of {bound} on {vertices} vertices", levels.len())
         }
     }
 }

@@ -201,7 +201,7 @@ fn table(
         for measure in MEASURES {
             text += &format!(" {:>8.2e}", (measure.of)(level));
         }
-        text += &format!(" {:>8.2}\n", level.effectivity());
+        text += &format!(" {:>8}\n", index_text(level.effectivity()));
         if k > 0 {
             text += &format!("{:>10}", "rate");
             for measure in MEASURES {
@@ -231,6 +231,15 @@ fn warning_lines(levels: &[LevelErrors], warnings: &[LoadWarning]) -> String {
     let vertices = grouped(levels.last().map_or(0, |last| last.vertices));
     let line = |warning| note(&format!("warning, at the finest level ({vertices} vertices): {warning}"));
     warnings.iter().map(line).collect()
+}
+
+/// Where there is no error, there is no index.
+fn index_text(index: f64) -> String {
+    match index {
+        index if !index.is_finite() => "-".into(),
+        index if index < 1e5 => format!("{index:.2}"),
+        index => format!("{index:.1e}"),
+    }
 }
 
 fn rate_text(rate: Option<f64>) -> String {

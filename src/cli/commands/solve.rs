@@ -29,7 +29,7 @@ use crate::study::{AccuracyError, Bounded, solve_bounded};
 use crate::text::grouped;
 
 /// What an interrupted run has to say.
-const UNTOUCHED: &str = "it is as it was";
+const UNTOUCHED: &str = "nothing there was changed";
 
 pub(crate) fn run(arguments: &SolveArguments, watch: &Watch) -> Result<(), Failure> {
     let clock = Clock::new(arguments.time_limit);
@@ -300,7 +300,8 @@ fn solver_line(summary: &Summary) -> String {
     let Summary { backend, status, iterations, level_iterations, .. } = summary;
     let levels = level_iterations.len();
     let on_levels = if levels > 1 { format!(" on the finest of {levels} levels") } else { String::new() };
-    format!("{backend}: {status} in {} iterations{on_levels}", grouped(*iterations))
+    let plural = if *iterations == 1 { "" } else { "s" };
+    format!("{backend}: {status} in {} iteration{plural}{on_levels}", grouped(*iterations))
 }
 
 /// What the bound rests on.
@@ -318,8 +319,8 @@ fn error_line(summary: &Summary, unloaded: bool) -> String {
     let Some(bound) = summary.error_bound else { return String::new() };
     let relative = match summary.relative_error_bound {
         Some(relative) => format!("{:.2} %", 100.0 * relative),
-        None if unloaded => "nothing is loaded: rounding".into(),
-        None => "more than half of it: refine".into(),
+        None if unloaded => "no load: rounding".into(),
+        None => "no relative bound: refine".into(),
     };
     format!("at most {bound:.3e} in the energy norm ({relative})")
 }

@@ -164,8 +164,10 @@ fn make_mesh(name: &str, case: &CaseFile, further: usize, memory: Memory) -> Res
 pub(crate) fn too_early(case: &Path) -> impl Fn() -> Failure + Send + Sync + 'static {
     let name = case.display().to_string();
     move || {
-        let why = "the time was over before the first solve, and nothing is written";
-        Failure::NotCertified(format!("{name}: {why}; allow more, or take a coarser mesh (--time-limit)"))
+        let why = "the time limit has passed before the first solve, and nothing was written";
+        Failure::NotCertified(format!(
+            "{name}: {why}; allow more time (--time-limit), or take a coarser mesh"
+        ))
     }
 }
 
