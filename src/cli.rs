@@ -13,7 +13,7 @@ mod terminal;
 pub use case::{BackendName, CaseFile, MeshSource, SolverSettings};
 pub use failure::Failure;
 
-use std::io::{self, Write};
+use std::io::{self, IsTerminal, Write};
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -31,8 +31,11 @@ pub fn main() -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
+            let message = format!("error: {failure}");
+            // One line for who reads it by a program; a terminal would break it inside of words.
+            let message = if io::stderr().is_terminal() { terminal::wrapped(&message, 2) } else { message };
             // Nobody may be there to read it.
-            let _ = writeln!(io::stderr(), "error: {failure}");
+            let _ = writeln!(io::stderr(), "{message}");
             failure.exit_code()
         }
     }

@@ -1,4 +1,4 @@
-//! Errors of solutions: guaranteed bounds, and norms against an exact solution.
+//! Errors of solutions: bounds, guaranteed up to the quadrature of the loads, and norms against an exact solution.
 
 mod bound;
 mod lift;

@@ -4,4 +4,4 @@ mod names;
 mod number;
 
 pub(crate) use names::{excerpt, meant, nearest};
-pub(crate) use number::Number;
+pub(crate) use number::{Number, grouped};

@@ -94,6 +94,6 @@ pub enum Reason {
     #[error("its vectors do not have one entry for each vertex and each unknown")]
     Lengths,
     /// There is no candidate.
-    #[error("it has not come back within its time")]
+    #[error("it has not finished in time")]
     NoResult,
 }

@@ -9,6 +9,7 @@ use clap_complete::Shell;
 use super::case::BackendName;
 use crate::qp::TimeLimit;
 use crate::study::Tolerance;
+use crate::text::grouped;
 
 /// Where results go when no folder is named: a folder of this one, called like the case file.
 const OUTPUT: &str = "out";
@@ -44,11 +45,11 @@ pub(crate) struct Arguments {
 pub(crate) enum Command {
     /// Solve a case and write solution.vtu, summary.json, membranes.png
     Solve(SolveArguments),
-    /// Show every residual, from every backend or of an answer
+    /// Show all residuals, of every solver or of a given answer
     Check(CheckArguments),
     /// Measure errors and rates on finer meshes, for a built-in case
     Converge(ConvergeArguments),
-    /// Refine where the error is, to a guaranteed accuracy
+    /// Refine where the error is, until its bound is small enough
     Adapt(AdaptArguments),
     /// Time the solvers side by side, on a built-in family or a case
     Bench(BenchArguments),
@@ -76,13 +77,13 @@ pub(crate) struct SolveArguments {
     pub(crate) output: OutputArguments,
     #[command(flatten)]
     pub(crate) pictures: PictureArguments,
-    /// Most seconds of this run; see below
+    /// Time limit of this run in seconds, see below
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) time_limit: Option<TimeLimit>,
     /// Largest relative residual, or auto
     #[arg(long, value_name = "T", value_parser = tolerance_or_auto, allow_negative_numbers = true)]
     pub(crate) tolerance: Option<Tolerance>,
-    /// Leave the backend's answer as it is
+    /// Do not polish the answer of a backend
     #[arg(long)]
     pub(crate) no_polish: bool,
     /// Also write dual.vtu, flux.vtu, mesh.png
@@ -103,7 +104,7 @@ pub(crate) struct CheckArguments {
     /// Replace results of another case
     #[arg(long, requires = "out")]
     pub(crate) overwrite: bool,
-    /// Largest relative residual, not the case file's
+    /// Largest relative residual [default: the case file's]
     #[arg(long, value_name = "T", value_parser = tolerance, allow_negative_numbers = true)]
     pub(crate) tolerance: Option<f64>,
 }
@@ -112,10 +113,10 @@ pub(crate) struct CheckArguments {
 pub(crate) struct ConvergeArguments {
     #[command(flatten)]
     pub(crate) case: CaseArguments,
-    /// Meshes, each refined once more
+    /// Number of meshes, from coarse to fine
     #[arg(long, value_name = "N", default_value = "5", value_parser = at_least(1), allow_negative_numbers = true)]
     pub(crate) levels: usize,
-    /// Most seconds of this run
+    /// Time limit of this run in seconds
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) time_limit: Option<TimeLimit>,
     #[arg(long, value_name = "NAME", help = SOLVERS)]
@@ -127,16 +128,21 @@ pub(crate) struct ConvergeArguments {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = "\
+The bound of the error in the energy norm is guaranteed up to the quadrature of
+the loads. --tolerance is relative to the energy norm of the exact solution; how
+accurately each level is solved, the case file says.
+The same command goes on where a run has stopped.")]
 pub(crate) struct AdaptArguments {
     #[command(flatten)]
     pub(crate) case: CaseArguments,
-    /// Guaranteed relative error to reach
+    /// Relative error bound to reach
     #[arg(long, value_name = "T", default_value = "0.01", value_parser = tolerance, allow_negative_numbers = true)]
     pub(crate) tolerance: f64,
-    /// Most vertices of a mesh
-    #[arg(long, value_name = "N", default_value = "1000000", value_parser = at_least(3))]
+    /// Largest number of vertices
+    #[arg(long, value_name = "N", default_value = "1,000,000", value_parser = at_least(3))]
     pub(crate) max_vertices: usize,
-    /// Most seconds of this run
+    /// Time limit of this run in seconds
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) time_limit: Option<TimeLimit>,
     #[arg(long, value_name = "NAME", help = SOLVERS)]
@@ -148,7 +154,9 @@ pub(crate) struct AdaptArguments {
 }
 
 #[derive(Debug, Args)]
-#[command(after_help = "Without a case file, results go into out/bench.")]
+#[command(after_help = "\
+Without a case file, results go into out/bench. Where a solver needs more memory
+than there is, its row says memory_limit in place of a time.")]
 pub(crate) struct BenchArguments {
     /// A case, refined level by level [default: a family on the square]
     #[arg(value_name = "CASE.toml", conflicts_with = "sizes")]
@@ -156,29 +164,32 @@ pub(crate) struct BenchArguments {
     /// Meshes of N x N cells
     #[arg(long, value_name = "N,...", value_delimiter = ',', default_value = "64,128,256", value_parser = at_least(2))]
     pub(crate) sizes: Vec<usize>,
-    /// Meshes of the case, each one finer
+    /// Number of meshes, from coarse to fine
     #[arg(long, value_name = "N", default_value = "4", value_parser = at_least(1), requires = "case")]
     pub(crate) levels: usize,
-    /// Solvers [default: all of this build]
+    /// Solvers to compare [default: all of this build]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     pub(crate) solvers: Vec<BackendName>,
-    /// Seconds a solve may take
+    /// Time limit of each solve in seconds
     #[arg(long, value_name = "S", default_value = "60", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) time_limit: TimeLimit,
-    /// Largest relative residual, not the case file's
+    /// Largest relative residual [default: the case file's]
     #[arg(long, value_name = "T", value_parser = tolerance, allow_negative_numbers = true)]
     pub(crate) tolerance: Option<f64>,
-    /// Also show rows of such a bench.csv; repeatable
+    /// Also show the rows of this bench.csv; repeatable
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) merge: Vec<PathBuf>,
     /// Measure nothing, show the rows of --merge
     #[arg(long, requires = "merge")]
     pub(crate) no_run: bool,
+    /// Memory limit in GiB [default: all that is free]
+    #[arg(long, value_name = "GIB", value_parser = positive, allow_negative_numbers = true)]
+    pub(crate) memory_limit: Option<f64>,
     #[command(flatten)]
     pub(crate) output: OutputArguments,
     #[command(flatten)]
     pub(crate) pictures: PictureArguments,
-    /// No output on the terminal but errors
+    /// Print nothing but errors
     #[arg(long, short)]
     pub(crate) quiet: bool,
 }
@@ -216,7 +227,7 @@ pub(crate) struct OutputArguments {
     /// Folder for the results [default: out/CASE]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Replace results of another case or settings
+    /// Replace results of another case or other settings
     #[arg(long)]
     pub(crate) overwrite: bool,
 }
@@ -226,7 +237,7 @@ pub(crate) struct PictureArguments {
     /// Write no pictures
     #[arg(long)]
     pub(crate) no_picture: bool,
-    /// Their formats: png, svg, pdf
+    /// Picture formats: png, svg, pdf
     #[arg(
         long = "pictures",
         value_name = "F,...",
@@ -273,10 +284,10 @@ pub(crate) struct CaseArguments {
     /// Further uniform refinements of the mesh
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = refinements, allow_negative_numbers = true)]
     pub(crate) refine: u32,
-    /// Most GiB of memory [default: all that is free]
+    /// Memory limit in GiB [default: all that is free]
     #[arg(long, value_name = "GIB", value_parser = positive, allow_negative_numbers = true)]
     pub(crate) memory_limit: Option<f64>,
-    /// No output on the terminal but errors
+    /// Print nothing but errors
     #[arg(long, short)]
     pub(crate) quiet: bool,
 }
@@ -309,9 +320,15 @@ fn refinements(text: &str) -> Result<u32, String> {
 
 fn at_least(least: usize) -> impl Fn(&str) -> Result<usize, String> + Clone + Send + Sync + 'static {
     move |text| {
-        let value = text.trim().parse().ok().filter(|&value| value >= least);
+        let value = count(text.trim()).filter(|&value| value >= least);
         value.ok_or_else(|| format!("choose a whole number, at least {least}"))
     }
+}
+
+/// A whole number, also in groups of three digits as the program prints it.
+fn count(text: &str) -> Option<usize> {
+    let in_groups = || text.replace(',', "").parse().ok().filter(|&value| grouped(value) == text);
+    text.parse().ok().or_else(in_groups)
 }
 
 fn seconds(text: &str) -> Result<TimeLimit, String> {
@@ -338,4 +355,20 @@ pub(crate) fn one_line(error: &clap::Error, command: Option<&str>) -> String {
     let known = |name: &&str| Arguments::command().find_subcommand(name).is_some();
     let command = command.filter(known).map_or_else(String::new, |name| format!("{name} "));
     format!("{message}; see `membranes {command}--help`")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_are_read_as_they_are_printed() {
+        assert_eq!(
+            ["0", "1000000", "1,000,000", "12,345"].map(count),
+            [0, 1_000_000, 1_000_000, 12_345].map(Some)
+        );
+        assert_eq!(["1,5", "1,0000", ",100", "1,000,", "-1", "1.5", "", ","].map(count), [None; 8]);
+        assert_eq!(at_least(3)("1,000"), Ok(1000));
+        assert_eq!(at_least(3)("2"), Err("choose a whole number, at least 3".into()));
+    }
 }

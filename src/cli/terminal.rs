@@ -15,10 +15,40 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Lines of a name and a value, aligned.
+/// Columns of a terminal that nobody has made wider.
+const COLUMNS: usize = 80;
+
+/// A text in lines of at most 80 columns, broken between words; all lines but the first begin with so many spaces. A word that is
+/// too long for a line, such as a path, stays whole: it can be copied.
+pub(crate) fn wrapped(text: &str, indent: usize) -> String {
+    let mut lines = String::new();
+    let mut column = 0;
+    for word in text.split_inclusive(' ') {
+        let letters = word.trim_end().chars().count();
+        if column > indent && column + letters > COLUMNS {
+            lines.truncate(lines.trim_end().len());
+            lines += "\n";
+            lines.extend(std::iter::repeat_n(' ', indent));
+            column = indent;
+        }
+        lines += word;
+        column += word.chars().count();
+    }
+    lines
+}
+
+/// Lines of a name and a value, aligned; values that are longer than a line go on below themselves. Each line of a value has the
+/// name before it, and a value that is empty has no line.
 pub(crate) fn fields(rows: &[(&str, String)]) -> String {
-    let width = rows.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
-    rows.iter().map(|(name, value)| format!("  {name:width$}  {value}\n")).collect()
+    let width =
+        rows.iter().filter(|(_, value)| !value.is_empty()).map(|(name, _)| name.len()).max().unwrap_or(0);
+    let lines = rows.iter().flat_map(|(name, value)| value.lines().map(move |line| (name, line)));
+    lines.map(|(name, line)| wrapped(&format!("  {name:width$}  {line}"), width + 4) + "\n").collect()
+}
+
+/// A line below a table, indented; what is longer than 80 columns goes on indented further.
+pub(crate) fn note(text: &str) -> String {
+    wrapped(&format!("  {text}"), 4) + "\n"
 }
 
 /// A number with so many decimals (at least four), or in powers of ten where they would be none or many.
@@ -28,28 +58,9 @@ pub(crate) fn fixed(value: f64, decimals: usize) -> String {
     if moderate { format!("{value:.decimals$}") } else { format!("{value:.0$e}", decimals - 4) }
 }
 
-/// A number of bytes or things, in groups of three digits.
-pub(crate) fn grouped(n: usize) -> String {
-    let digits = n.to_string();
-    let mut text = String::new();
-    for (k, digit) in digits.chars().enumerate() {
-        if k > 0 && (digits.len() - k).is_multiple_of(3) {
-            text.push(',');
-        }
-        text.push(digit);
-    }
-    text
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn digits_are_grouped_from_the_right() {
-        let texts: Vec<String> = [0, 999, 1000, 65_536, 1_050_625].into_iter().map(grouped).collect();
-        assert_eq!(texts, ["0", "999", "1,000", "65,536", "1,050,625"]);
-    }
 
     #[test]
     fn numbers_of_all_sizes_show_digits() {
@@ -60,5 +71,29 @@ mod tests {
     #[test]
     fn fields_are_aligned() {
         assert_eq!(fields(&[("a", "1".into()), ("long", "2".into())]), "  a     1\n  long  2\n");
+        assert_eq!(fields(&[("a", "1\n2".into()), ("none", String::new())]), "  a  1\n  a  2\n");
+        let value = "seven letters ".repeat(6);
+        let expected = format!("  a  {}seven\n     letters\n", "seven letters ".repeat(5));
+        assert_eq!(fields(&[("a", value.trim_end().into())]), expected);
+    }
+
+    #[test]
+    fn lines_are_broken_between_words_only() {
+        let text = "four ".repeat(40);
+        let lines = wrapped(text.trim_end(), 3);
+        assert!(
+            lines.lines().all(|line| line.chars().count() <= COLUMNS && line == line.trim_end()),
+            "{lines}"
+        );
+        assert_eq!(lines.lines().count(), 3);
+        assert!(lines.lines().skip(1).all(|line| line.starts_with("   four")), "{lines}");
+        assert_eq!(lines.split_whitespace().collect::<Vec<_>>(), ["four"; 40], "every word is there, whole");
+        let exact = format!("{} {}", "a".repeat(39), "b".repeat(40));
+        assert_eq!(wrapped(&exact, 0), exact);
+        assert_eq!(wrapped(&format!("{exact}c"), 0), exact.replace(' ', "\n") + "c");
+        let path = "p".repeat(100);
+        assert_eq!(wrapped(&path, 2), path);
+        assert_eq!(wrapped(&format!("files: {path} x"), 2), format!("files:\n  {path}\n  x"));
+        assert_eq!(note("a"), "  a\n");
     }
 }

@@ -1,4 +1,4 @@
-//! A guaranteed bound of the energy error, from the full flux reconstruction.
+//! A bound of the energy error, guaranteed up to the quadrature of the loads, from the full flux reconstruction.
 //!
 //! Let `lt >= 0` be an action and `sigma_i` fluxes in `H(div)`, their residuals `r_i = f_i - (-1)^i lt - div sigma_i` cut into
 //! a part of zero mean on every triangle and a rest `rho_i`. Let `u^` be a pair in the cone that has the trace of the data. Then
@@ -32,9 +32,9 @@ use crate::flux::WedgeFluxes;
 use crate::geometry::friedrichs;
 use crate::problem::{ContactProblem, Domain};
 
-/// A guaranteed bound of the energy error `|||u - u_h||| = (sum_i mu_i |u_i - u_ih|_{H1}^2)^(1/2)`.
+/// A bound of the energy error `|||u - u_h||| = (sum_i mu_i |u_i - u_ih|_{H1}^2)^(1/2)`.
 ///
-/// Guaranteed up to the quadrature of loads and height: loads that are polynomials of degree 3 are integrated exactly, and of
+/// It is guaranteed up to the quadrature of the loads and of the height: loads that are polynomials of degree 3 are integrated exactly, and of
 /// others the residual is known as well as the quadrature knows them. How well that is, a second rule says at other points
 /// ([`ErrorBound::warnings`]); what both do not meet, nobody sees.
 #[derive(Debug, Clone, PartialEq)]
@@ -135,7 +135,7 @@ impl ErrorBound {
         }
     }
 
-    /// A guaranteed bound of the error relative to the energy norm of the exact solution, which is
+    /// A bound of the error relative to the energy norm of the exact solution, which is
     /// `|||u_h|||` less the bound at least; `None` when the bound is not smaller than that. Zero where there is no error, also
     /// of membranes at rest.
     pub fn relative(&self) -> Option<f64> {

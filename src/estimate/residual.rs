@@ -1,4 +1,4 @@
-//! The residual estimator, to compare the guaranteed bound with.
+//! The residual estimator, to compare the bound with.
 
 use super::MeasureError;
 use crate::discretization::{Discretization, Displacement};

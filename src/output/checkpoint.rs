@@ -14,7 +14,7 @@ const UNKNOWN: &str = "unknown";
 
 /// What is known of a solution when nothing is.
 fn unknown() -> Statistics {
-    Statistics { status: Status::Unknown, ..Statistics::of(UNKNOWN) }
+    Statistics::of(UNKNOWN, Status::Unknown)
 }
 
 /// Writes a checkpoint. Arrays: `marked`, the marked triangles of all refinements one after the other, `marked_counts`, their
@@ -85,7 +85,7 @@ mod tests {
             statistics: Statistics {
                 iterations: 7,
                 choice: Some("few".into()),
-                ..Statistics::of("multigrid")
+                ..Statistics::of("multigrid", Status::Solved)
             },
         }
     }
@@ -108,11 +108,12 @@ mod tests {
     /// JSON has no infinity: such statistics are written, but cannot be read.
     #[test]
     fn what_is_not_known_is_not_called_solved() {
-        let statistics = Statistics { energies: vec![f64::INFINITY], ..Statistics::of("multigrid") };
+        let solved = Statistics::of("multigrid", Status::Solved);
+        let statistics = Statistics { energies: vec![f64::INFINITY], ..solved };
         let read = read_checkpoint(Cursor::new(written(&Checkpoint { statistics, ..checkpoint() }))).unwrap();
         assert_eq!((read.statistics.status, read.statistics.solver.as_str()), (Status::Unknown, UNKNOWN));
         assert_eq!(read.displacement, checkpoint().displacement, "the rest is there");
-        let known = Statistics { status: Status::Inaccurate, ..Statistics::of("multigrid") };
+        let known = Statistics::of("multigrid", Status::Inaccurate);
         let read = read_checkpoint(Cursor::new(written(&Checkpoint { statistics: known, ..checkpoint() })));
         assert_eq!(read.unwrap().statistics.status, Status::Inaccurate);
     }

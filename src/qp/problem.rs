@@ -3,6 +3,8 @@
 use sprs::CsMat;
 use thiserror::Error;
 
+use crate::text::grouped;
+
 /// `minimise 1/2 x'P x + q'x + c subject to A x >= b`, with `P` symmetric positive semidefinite.
 ///
 /// Shapes: `P` is `variables x variables`, of which the upper triangle is stored; `A` is `constraints x variables`; both
@@ -200,7 +202,10 @@ fn check_finite(name: &'static str, values: &[f64]) -> Result<(), QpError> {
 #[non_exhaustive]
 pub enum QpError {
     /// A matrix of the wrong shape.
-    #[error("{name} is {} x {}, but q and b ask for {} x {}", found.0, found.1, expected.0, expected.1)]
+    #[error(
+        "{name} is {} x {}, but q and b ask for {} x {}",
+        grouped(found.0), grouped(found.1), grouped(expected.0), grouped(expected.1)
+    )]
     Shape {
         /// Which.
         name: &'static str,

@@ -48,12 +48,11 @@ impl ContactSolver for ActiveSet {
             displacement: found.displacement,
             multiplier: found.multiplier,
             statistics: Statistics {
-                status: found.status,
                 iterations: found.repairs + 1,
                 level_iterations,
                 setup_seconds,
                 solve_seconds: start.elapsed().as_secs_f64() - setup_seconds,
-                ..Statistics::of(self.name())
+                ..Statistics::of(self.name(), found.status)
             },
         })
     }

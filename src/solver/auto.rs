@@ -3,9 +3,12 @@
 use web_time::Instant;
 
 use super::multigrid::PreparedMultigrid;
-use super::{ActiveSet, Candidate, ContactSolver, Multigrid, PreparedSolver, SolverError, SolverOptions};
+use super::{
+    ActiveSet, Candidate, ContactSolver, Multigrid, PreparedSolver, SolverError, SolverOptions, Stalled,
+};
 use crate::discretization::Discretization;
 use crate::qp::Status;
+use crate::text::grouped;
 
 /// Up to as many unknowns of each membrane the active set method takes no longer than multigrid, and is exact to rounding.
 const SMALL: usize = 2000;
@@ -36,11 +39,13 @@ impl ContactSolver for Auto {
 struct PreparedAuto<'d> {
     d: &'d Discretization,
     multigrid: Option<PreparedMultigrid<'d>>,
+    /// What is not tried again.
+    stalled: Vec<Stalled>,
 }
 
 impl<'d> PreparedAuto<'d> {
     fn new(d: &'d Discretization) -> Self {
-        Self { d, multigrid: Some(PreparedMultigrid::new(d)) }
+        Self { d, multigrid: Some(PreparedMultigrid::new(d)), stalled: Vec::new() }
     }
 }
 
@@ -60,7 +65,8 @@ impl PreparedSolver for PreparedAuto<'_> {
             (self.multigrid_or_active_set(options)?, "many")
         };
         let stalled = if size == "many" && self.multigrid.is_none() { "; multigrid stalled" } else { "" };
-        let reason = format!("by auto: {size} unknowns ({unknowns} a membrane), {hierarchy}{stalled}");
+        let reason =
+            format!("by auto: {size} unknowns ({} a membrane), {hierarchy}{stalled}", grouped(unknowns));
         candidate.statistics.choice = Some(reason);
         Ok(candidate)
     }
@@ -69,7 +75,11 @@ impl PreparedSolver for PreparedAuto<'_> {
 impl PreparedAuto<'_> {
     /// Multigrid, and the active set method in the time that is left where it stalls: that needs no levels to be good.
     fn multigrid_or_active_set(&mut self, options: &SolverOptions) -> Result<Candidate, SolverError> {
-        let Some(multigrid) = &mut self.multigrid else { return ActiveSet.solve(self.d, options) };
+        let Some(multigrid) = &mut self.multigrid else {
+            let mut candidate = ActiveSet.solve(self.d, options)?;
+            candidate.statistics.stalled.clone_from(&self.stalled);
+            return Ok(candidate);
+        };
         let start = Instant::now();
         let stalled = multigrid.solve(options)?;
         let left = options.time_limit.map(|limit| limit.left_since(start));
@@ -81,6 +91,7 @@ impl PreparedAuto<'_> {
             ActiveSet.solve(self.d, &SolverOptions { time_limit: left.flatten(), ..options.clone() })?;
         let method = format!("{} on algebraic levels", Multigrid.name());
         candidate.statistics = candidate.statistics.after(method, stalled.statistics);
+        self.stalled.clone_from(&candidate.statistics.stalled);
         Ok(candidate)
     }
 }
@@ -99,9 +110,14 @@ mod tests {
         let choice = |height: f64| {
             let mesh = rectangle([0.0, 0.0], [1.0, height], [64; 2], Pattern::Crossed).unwrap();
             let d = Discretization::new(&problem, mesh.clone()).unwrap();
-            let statistics = Auto.solve(&d, &SolverOptions::default()).expect("it runs").statistics;
-            assert_eq!(statistics.status, Status::Solved, "{statistics:?}");
-            statistics
+            let mut auto = Auto;
+            let mut prepared = auto.prepare(&d);
+            let mut solve = || prepared.solve(&SolverOptions::default()).expect("it runs").statistics;
+            let [first, second] = [solve(), solve()];
+            assert_eq!([first.status, second.status], [Status::Solved; 2], "{first:?} {second:?}");
+            // What has stalled in the first solve is not tried again, and the second one says so too.
+            assert_eq!((&first.choice, &first.stalled), (&second.choice, &second.stalled));
+            first
         };
         let found = choice(0.01);
         let reason = found.choice.expect("it was left open");

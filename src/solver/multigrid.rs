@@ -7,7 +7,7 @@ use web_time::Instant;
 
 use super::decoupled::Decoupled;
 use super::{
-    Candidate, ContactSolver, PreparedSolver, SolverError, SolverOptions, StartingPoint, Statistics,
+    Candidate, ContactSolver, PreparedSolver, SolverError, SolverOptions, Stalled, StartingPoint, Statistics,
 };
 use crate::discretization::Discretization;
 use crate::multigrid::half::{HalfProblem, MAX_CYCLES, solve};
@@ -49,11 +49,13 @@ pub(super) struct PreparedMultigrid<'d> {
     hierarchy: Option<Hierarchy>,
     /// How levels are made.
     levels: fn(&Discretization) -> Hierarchy,
+    /// Levels that are not tried again.
+    stalled: Vec<Stalled>,
 }
 
 impl<'d> PreparedMultigrid<'d> {
     pub(super) fn new(d: &'d Discretization) -> Self {
-        Self { d, hierarchy: None, levels: Hierarchy::new }
+        Self { d, hierarchy: None, levels: Hierarchy::new, stalled: Vec::new() }
     }
 
     /// Solves on the levels as they are; the time limit counts from `start`.
@@ -73,7 +75,8 @@ impl PreparedSolver for PreparedMultigrid<'_> {
     fn solve(&mut self, options: &SolverOptions) -> Result<Candidate, SolverError> {
         options.check()?;
         let start = Instant::now();
-        let candidate = self.attempt(options, start)?;
+        let mut candidate = self.attempt(options, start)?;
+        candidate.statistics.stalled.clone_from(&self.stalled);
         let refinements = self.hierarchy.as_ref().map_or(0, Hierarchy::refinements);
         if candidate.statistics.status != Status::Stalled || refinements == 0 {
             return Ok(candidate);
@@ -82,6 +85,7 @@ impl PreparedSolver for PreparedMultigrid<'_> {
         let mut on_algebraic_levels = self.attempt(options, start)?;
         let method = format!("{NAME} on levels of {refinements} refinements");
         on_algebraic_levels.statistics = on_algebraic_levels.statistics.after(method, candidate.statistics);
+        self.stalled.clone_from(&on_algebraic_levels.statistics.stalled);
         Ok(on_algebraic_levels)
     }
 }
@@ -104,15 +108,15 @@ fn solve_on(
         || hierarchy.to_vertices(&gap.x),
         || (hierarchy.to_vertices(&sum.x), hierarchy.to_vertices(&gap.y)),
     );
+    let status = if gap.status == Status::Solved { sum.status } else { gap.status };
     Ok(Candidate {
         displacement: decoupled.recombine(&s, &w),
         multiplier: d.interior().iter().map(|&a| decoupled.gap_tension() * y[a]).collect(),
         statistics: Statistics {
-            status: if gap.status == Status::Solved { sum.status } else { gap.status },
             iterations: level_iterations.last().copied().unwrap_or(0),
             level_iterations,
             energies: gap.energies,
-            ..Statistics::of(NAME)
+            ..Statistics::of(NAME, status)
         },
     })
 }

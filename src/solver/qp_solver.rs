@@ -34,10 +34,9 @@ impl ContactSolver for QpSolver {
         let posing = start.elapsed().as_secs_f64();
         let solution = solve_nondimensional(self.backend.as_mut(), &qp, &qp_options(d, options, start))?;
         let statistics = Statistics {
-            status: solution.status,
             iterations: solution.iterations,
             setup_seconds: posing + solution.setup_seconds,
-            ..Statistics::of(self.name())
+            ..Statistics::of(self.name(), solution.status)
         };
         let mut candidate = Candidate::from_answer(d, Answer { x: solution.x, y: solution.y }, statistics);
         if options.polish {

@@ -19,7 +19,8 @@ pub struct Statistics {
     pub energies: Vec<f64>,
     /// Which solver was chosen and why, when that was left open.
     pub choice: Option<String>,
-    /// What was tried before and stalled, in this order. Its seconds are among those below.
+    /// What was tried before and stalled, in this order, also when an earlier solve of the same prepared solver has tried it. Its
+    /// seconds are among those below if they were spent in this solve.
     #[cfg_attr(feature = "files", serde(default, skip_serializing_if = "Vec::is_empty"))]
     pub stalled: Vec<Stalled>,
     /// Seconds spent before the first iteration. Not kept with the rest: they are another number in each run.
@@ -33,11 +34,11 @@ pub struct Statistics {
 }
 
 impl Statistics {
-    /// Of a solver that has not done anything yet.
-    pub(crate) fn of(solver: &str) -> Self {
+    /// Of a solver that has stopped for this reason, before anything else is known of it.
+    pub(crate) fn of(solver: &str, status: Status) -> Self {
         Self {
             solver: solver.into(),
-            status: Status::Solved,
+            status,
             iterations: 0,
             level_iterations: Vec::new(),
             energies: Vec::new(),

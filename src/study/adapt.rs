@@ -21,7 +21,7 @@ const FRACTION: f64 = 0.5;
 /// length. Runs have less than a hundred.
 const MAX_REFINEMENTS: usize = 1000;
 
-/// Solves on meshes that are bisected where the indicators of the guaranteed bound are largest.
+/// Solves on meshes that are bisected where the indicators of the error bound are largest.
 ///
 /// Each level starts from the solution of the one before; the bisections are the hierarchy of the multigrid solver.
 pub struct AdaptiveStudy {
@@ -53,7 +53,7 @@ pub struct AdaptiveLevel {
     pub h_min: f64,
     /// The smallest angle, degrees.
     pub min_angle: f64,
-    /// The guaranteed bound of the energy error.
+    /// The bound of the energy error, guaranteed up to the quadrature of the loads.
     pub bound: f64,
     /// The bound relative to the exact solution's energy norm; empty when the bound is too large to know that.
     pub relative_bound: Option<f64>,

@@ -31,6 +31,9 @@ pub const ORIGIN: &str = "rust";
 /// The `status` of a solver that was too slow on a coarser mesh.
 pub const SKIPPED: &str = "skipped";
 
+/// The `status` of a solver that needs more memory than there is.
+pub const MEMORY: &str = "memory_limit";
+
 /// How often a solve is repeated when nothing else is said.
 const REPEAT: usize = 3;
 
@@ -81,6 +84,14 @@ impl Comparison {
     /// The names of the solvers.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.contestants.iter().map(|contestant| contestant.name.as_str())
+    }
+
+    /// The row of a solver that is not run, with the reason as its status.
+    ///
+    /// # Panics
+    /// When there is no solver `index`.
+    pub fn left_out(&self, index: usize, place: &Place, status: &str) -> Row {
+        Row { status: status.into(), ..blank(&self.contestants[index].name, place) }
     }
 
     /// Runs all solvers on one mesh.

@@ -9,7 +9,7 @@ use super::accuracy::{AccuracyError, Bounded, Tolerance, solve_bounded};
 use super::prolongation::Fields;
 use crate::action::Rejected;
 use crate::discretization::{Discretization, DiscretizationError};
-use crate::estimate::{ErrorNorms, MeasureError};
+use crate::estimate::{ErrorNorms, LoadWarning, MeasureError};
 use crate::mesh::{MeshError, MeshFamily};
 use crate::problem::{ContactProblem, ExactSolution, ProblemError};
 use crate::qp::TimeLimit;
@@ -25,6 +25,8 @@ pub struct ConvergenceStudy {
     tolerance: Tolerance,
     level: usize,
     last: Option<Fields>,
+    /// The vertices of the last mesh that was solved on, and the loads of which its bound may know too little.
+    warnings: Option<(usize, Vec<LoadWarning>)>,
 }
 
 /// A level of a study fails.
@@ -79,7 +81,7 @@ impl ConvergenceStudy {
         tolerance: Tolerance,
     ) -> Result<Self, StudyError> {
         let problem = exact.problem()?;
-        Ok(Self { exact, problem, family, solver, options, tolerance, level: 0, last: None })
+        Ok(Self { exact, problem, family, solver, options, tolerance, level: 0, last: None, warnings: None })
     }
 
     /// Vertices of the current mesh: that of the last level, before the first one that of the coming level.
@@ -134,6 +136,22 @@ impl ConvergenceStudy {
         self.on_next_mesh(|_, _, _, _| Ok(())).map(|_| ())
     }
 
+    /// The loads of which the quadrature may know too little on `level` for its bound to hold, where that is the last level or one
+    /// that an earlier study has measured: then the problem is assembled there, and not solved.
+    ///
+    /// # Errors
+    /// [`StudyError`] when there is no such mesh.
+    pub fn into_warnings(mut self, level: &LevelErrors) -> Result<Vec<LoadWarning>, StudyError> {
+        if let Some((_, warnings)) = self.warnings.take_if(|(vertices, _)| *vertices == level.vertices) {
+            return Ok(warnings);
+        }
+        while self.vertices() < level.vertices {
+            self.family.refine()?;
+        }
+        let d = Discretization::new(&self.problem, self.family.mesh().clone())?;
+        Ok(LoadWarning::all(&d, level.bound))
+    }
+
     /// Refines (but for the first level), solves from the last level's solution, certifies, and hands the solution to
     /// `measure`; returns its result and the seconds up to there.
     fn on_next_mesh<T>(
@@ -156,6 +174,7 @@ impl ConvergenceStudy {
         let seconds = start.elapsed().as_secs_f64();
         let measured = measure(&self.exact, &d, &bounded, level)?;
         self.last = Some(Fields::from(&bounded.solution));
+        self.warnings = Some((self.vertices(), bounded.bound.warnings));
         self.level += 1;
         Ok((measured, seconds))
     }

@@ -1,6 +1,7 @@
 //! The figures of a convergence study and their rates.
 
 use super::exponent;
+use crate::text::grouped;
 
 /// One level: a mesh and the errors of the solution on it. Written as a row of `summary.csv`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,7 +23,7 @@ pub struct LevelErrors {
     pub l2: f64,
     /// `sqrt(sum_i mu_i |u_i - u_ih|_{H1}^2)`.
     pub energy: f64,
-    /// The guaranteed bound of `energy`.
+    /// The bound of `energy`, guaranteed up to the quadrature of the loads.
     pub bound: f64,
     /// The largest error of both displacements at a vertex.
     pub nodal: f64,
@@ -45,7 +46,7 @@ pub struct LevelErrors {
 }
 
 impl LevelErrors {
-    /// The guaranteed bound over the energy error.
+    /// The bound over the energy error.
     pub fn effectivity(&self) -> f64 {
         self.bound / self.energy
     }
@@ -94,13 +95,15 @@ pub fn markdown(levels: &[LevelErrors]) -> String {
     text += &"---:|---:|".repeat(MEASURES.len());
     text += "---:|\n";
     for (k, level) in levels.iter().enumerate() {
-        text += &format!("| {} | {:.2e} |", level.vertices, level.h);
+        text += &format!("| {} | {:.2e} |", grouped(level.vertices), level.h);
         for measure in MEASURES {
             let rate = k.checked_sub(1).and_then(|before| rate(measure, &levels[before], level));
             let rate = rate.map_or_else(String::new, |rate| format!("{rate:.2}"));
             text += &format!(" {:.2e} | {rate} |", (measure.of)(level));
         }
-        text += &format!(" {:.2} |\n", level.effectivity());
+        // Where there is no error, there is no index.
+        let effectivity = Some(level.effectivity()).filter(|index| index.is_finite());
+        text += &format!(" {} |\n", effectivity.map_or_else(String::new, |index| format!("{index:.2}")));
     }
     text += "| all levels | |";
     for measure in MEASURES {

@@ -12,6 +12,19 @@ impl fmt::Display for Number {
     }
 }
 
+/// How many there are of something, its digits in groups of three: `60,003`.
+pub(crate) fn grouped(n: usize) -> String {
+    let digits = n.to_string();
+    let mut text = String::new();
+    for (k, digit) in digits.chars().enumerate() {
+        if k > 0 && (digits.len() - k).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -25,5 +38,11 @@ mod tests {
         for (x, spelled) in [(1e300, "1e300"), (1.0 / 3.0, "0.3333333333333333")] {
             assert_eq!(spelled.parse(), Ok(x), "it is the number itself");
         }
+    }
+
+    #[test]
+    fn digits_are_grouped_from_the_right() {
+        let texts: Vec<String> = [0, 999, 1000, 65_536, 1_050_625].into_iter().map(grouped).collect();
+        assert_eq!(texts, ["0", "999", "1,000", "65,536", "1,050,625"]);
     }
 }

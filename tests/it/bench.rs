@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use membrane_contact::study::comparison::{Row, SKIPPED};
+use membrane_contact::study::comparison::{MEMORY, Row, SKIPPED};
 use tempfile::tempdir;
 
 use super::program::{files, lines_too_long, run};
@@ -97,6 +97,38 @@ fn who_runs_out_of_time_is_skipped_and_without_any_solution_it_is_no_success() {
     assert_eq!(files(&folder.path().join("results")), RESULTS, "the rows are kept");
 }
 
+/// Beside what the program has before anything, there is memory for 8,500 vertices of multigrid, and for 3,000 of Clarabel.
+#[test]
+fn who_needs_more_memory_than_there_is_has_a_row_that_says_so() {
+    let folder = tempdir().unwrap();
+    let bench = |limit: &str| {
+        let arguments = format!("bench --sizes 32,64 --solvers multigrid,clarabel --overwrite {limit}");
+        let table = run(folder.path(), &arguments).success();
+        let rows = rows(&folder.path().join("out/bench"));
+        (table, rows.into_iter().map(|row| (row.status, row.certified)).collect::<Vec<_>>())
+    };
+    let solved = || ("solved".to_owned(), true);
+    let (table, limited) = bench("--memory-limit 0.24");
+    assert_eq!(limited, [solved(), solved(), solved(), (MEMORY.into(), false)]);
+    assert!(table.contains("no: memory_limit"), "{table}");
+    assert_eq!(bench("--memory-limit 1").1, [(); 4].map(|()| solved()));
+}
+
+#[test]
+fn groups_that_are_not_used_are_named() {
+    let folder = tempdir().unwrap();
+    let mesh = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/gmsh");
+    for (name, line) in [("two_groups_41.msh", true), ("no_groups_41.msh", false)] {
+        fs::copy(mesh.join(name), folder.path().join("plate.msh")).expect("readable");
+        let case =
+            "[membranes]\ntension = [1, 3]\nload = [-2, 1]\nheight = 0.1\n[domain]\nmesh = \"plate.msh\"\n";
+        fs::write(folder.path().join("plates.toml"), case).unwrap();
+        let bench = "bench plates.toml --levels 1 --solvers active-set --overwrite";
+        let table = run(folder.path(), bench).success();
+        assert_eq!(table.contains("\n  physical groups not used: "), line, "{name}: {table}");
+    }
+}
+
 #[test]
 fn bad_arguments_are_one_line_and_nothing_is_written() {
     let folder = tempdir().unwrap();
@@ -113,6 +145,8 @@ fn bad_arguments_are_one_line_and_nothing_is_written() {
         ("plates.toml --levels 40", ["plates.toml", "refine less"]),
         ("missing.toml", ["missing.toml", "name an existing file"]),
         ("--time-limit -1", ["--time-limit", "above 0"]),
+        ("--sizes 8,128 --memory-limit 0.24", ["GiB of memory", "--memory-limit"]),
+        ("plates.toml --levels 9 --memory-limit 0.24", ["GiB of memory", "--memory-limit"]),
         ("--merge other.csv", ["other.csv", "columns of bench.csv"]),
         ("--merge missing.csv", ["missing.csv", "columns of bench.csv"]),
         ("--no-run", ["--merge", "required"]),

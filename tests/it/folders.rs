@@ -66,7 +66,7 @@ fn another_case_is_refused_by_every_command_and_told_to_takes_the_place_of_all()
     write(folder.path(), &CASE.replace('4', "5"));
     for command in ["solve", "adapt", "converge", "bench", "export --format qps"] {
         let why = refused(&folder, &format!("{command} case.toml"));
-        assert!(why.contains("out/case: holds results of case.toml as it was before"), "{why}");
+        assert!(why.contains("out/case: holds results of an earlier version of case.toml"), "{why}");
     }
     // So is a case of the same name elsewhere.
     fs::create_dir(folder.path().join("below")).unwrap();

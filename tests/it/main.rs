@@ -26,5 +26,6 @@ mod resume;
 mod same_bytes;
 mod stability;
 mod surroundings;
+mod terminal;
 mod theory;
 mod timeless;

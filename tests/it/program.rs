@@ -148,7 +148,7 @@ fn shells_and_man_know_every_command_and_what_it_takes() {
 fn membranes_at_rest_are_not_to_be_refined() {
     let folder = folder_with(&CASE.replace("-2.0, \"10*sin(pi*x)\"", "0, 0").replace("0.1 + 0.05*x", "0.1"));
     let table = run(folder.path(), "solve plates.toml").success();
-    assert!(table.contains("(nothing is loaded: rounding)") && !table.contains("refine"), "{table}");
+    assert!(table.contains("(no load: rounding)") && !table.contains("refine"), "{table}");
 }
 
 #[test]
@@ -367,7 +367,8 @@ fn check_shows_every_backend_side_by_side_and_writes_nothing() {
 fn the_dual_mesh_is_written_when_asked_for() {
     let folder = folder_with(CASE);
     let table = run(folder.path(), "solve plates.toml --out results --dual").success();
-    assert!(table.contains("membranes.png, dual.vtu, flux.vtu, mesh.png}"), "{table}");
+    let words = table.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.contains("membranes.png, dual.vtu, flux.vtu, mesh.png}"), "{table}");
     let mut expected = RESULTS.to_vec();
     expected.extend(["dual.vtu", "flux.vtu", "mesh.png"]);
     expected.sort_unstable();

@@ -257,7 +257,7 @@ fn a_time_limit_of_the_command_covers_what_comes_before_the_solve() {
         let stopped = run(folder.path(), &format!("{command} case.toml --time-limit 1e-6"));
         assert_eq!((stopped.code, stopped.stderr.lines().count()), (Some(1), 1), "{}", stopped.stderr);
         assert!(
-            stopped.stderr.contains("before the first solve, and nothing is written"),
+            stopped.stderr.contains("before the first solve, and nothing was written"),
             "{}",
             stopped.stderr
         );
@@ -298,7 +298,7 @@ fn what_does_not_fit_into_memory_is_refused_before_it_is_begun() {
         fs::write(folder.path().join("case.toml"), case).unwrap();
         let refused = run(folder.path(), &format!("{arguments} case.toml --refine 8 --memory-limit 1"));
         assert_eq!(refused.code, Some(2), "{arguments}: {}", refused.stderr);
-        for word in ["GiB of memory, and there are 1.00", "coarser mesh", "--memory-limit"] {
+        for word in ["GiB of memory, and 1.00 are available", "coarser mesh", "--memory-limit"] {
             assert!(refused.stderr.contains(word), "{arguments}: {}", refused.stderr);
         }
         assert_eq!(refused.stderr.lines().count(), 1);

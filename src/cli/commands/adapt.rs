@@ -20,12 +20,13 @@ use crate::cli::run::pictures::Pictures;
 use crate::cli::run::progress::Progress;
 use crate::cli::run::setup::{Setup, options, solver, too_early, unused_groups};
 use crate::cli::run::watch::Watch;
-use crate::cli::terminal::{grouped, print};
+use crate::cli::terminal::{note, print, wrapped};
 use crate::estimate::LoadWarning;
 use crate::mesh::{DualMesh, Mesh, MeshError, SubTriangulation};
 use crate::output::{Seconds, Summary, read_checkpoint, write_checkpoint};
 use crate::pictures::{MeshPicture, RatesPicture, Series, render_rates, render_triangulation};
 use crate::study::{AdaptiveLevel, AdaptiveStudy, StudyError, exponent};
+use crate::text::grouped;
 
 /// The slope of the best possible rate: the error falls like the root of the number of vertices.
 const OPTIMAL: [f64; 1] = [-0.5];
@@ -40,6 +41,10 @@ const MORE_MEMORY: f64 = 2.6;
 /// Seconds that writing the results takes: two pictures, and what grows with the mesh.
 const WRITING: f64 = 1.0;
 const WRITING_PER_VERTEX: f64 = 4e-6;
+
+/// What the bound of the table is.
+const GUARANTEED: &str =
+    "bound: of the error in the energy norm, guaranteed up to the quadrature of the loads";
 
 /// Why a run ends.
 enum Stop {
@@ -217,7 +222,8 @@ fn stage(levels: &[AdaptiveLevel]) -> String {
         None => "level 0".into(),
         Some(last) => {
             let vertices = grouped(last.vertices);
-            format!("level {}, after {} on {vertices} vertices", levels.len(), percent(last.relative_bound))
+            let bound = percent(last.relative_bound);
+            format!("level {}, after a bound of {bound} on {vertices} vertices", levels.len())
         }
     }
 }
@@ -287,7 +293,7 @@ fn write_history(
             abscissa: "vertices",
             h: &levels.iter().map(|level| level.vertices as f64).collect::<Vec<_>>(),
             series: &[
-                Series { name: "guaranteed bound", values: &values(&levels, |level| Some(level.bound)) },
+                Series { name: "bound", values: &values(&levels, |level| Some(level.bound)) },
                 Series { name: "true error", values: &values(&levels, |level| level.energy_error) },
                 Series {
                     name: "residual estimator",
@@ -320,8 +326,8 @@ fn table(
     (folder, files): (&Path, &[&str]),
     left_out: &[&str],
 ) -> String {
-    let mut text =
-        format!("{title}\n  vertices    h min     bound  relative  effectivity  iterations  seconds\n");
+    let mut text = wrapped(title, 2);
+    text += "\n  vertices    h min     bound  relative  effectivity  iterations  seconds\n";
     for level in levels {
         let effectivity = level.effectivity().map_or_else(|| "-".into(), |index| format!("{index:.2}"));
         text += &format!(
@@ -330,21 +336,22 @@ fn table(
             level.h_min,
             level.bound,
             percent(level.relative_bound),
-            level.iterations,
+            grouped(level.iterations),
             level.solve_seconds + level.bound_seconds,
         );
     }
     // The first meshes may be too coarse to see anything of the solution.
     let later = &levels[levels.len() / 2..];
     if let Some(slope) = exponent(later.iter().map(|level| [level.vertices as f64, level.bound])) {
-        text += &format!("  the bound falls like vertices^{slope:.2} (later half; -0.50 is the best)\n");
+        text += &note(&format!("the bound falls like vertices^{slope:.2} (later half; -0.50 is the best)"));
     }
-    warnings.iter().for_each(|warning| text += &format!("  warning: {warning}\n"));
+    text += &note(GUARANTEED);
+    warnings.iter().for_each(|warning| text += &note(&format!("warning: {warning}")));
     if !left_out.is_empty() {
-        text += &format!("  left out: {}\n", left_out_line(left_out));
+        text += &note(&format!("left out: {}", left_out_line(left_out)));
     }
     let files = files.join(", ");
-    text + &format!("  files: {}/{{{files}}}\n", folder.display())
+    text + &note(&format!("files: {}/{{{files}}}", folder.display()))
 }
 
 fn verdict(
@@ -368,6 +375,6 @@ fn verdict(
     let relative = percent(levels.last().and_then(|level| level.relative_bound));
     let goal = percent(Some(arguments.tolerance));
     Err(Failure::NotCertified(format!(
-        "{name}: stopped at a guaranteed relative error of {relative}, above {goal}: {why}; {GOES_ON}"
+        "{name}: stopped with a relative error of at most {relative}, above {goal}: {why}; {GOES_ON}"
     )))
 }

@@ -53,7 +53,7 @@ pub(super) fn judge(
             part: Part::Solution,
             settings: NAME.into(),
             overwrite: arguments.overwrite,
-            says: "it is as it was",
+            says: "nothing there was changed",
         };
         let folder = Folder::claim(folder, &claim, watch)?;
         let verdict = result.as_ref().map_err(|rejected| rejected.as_ref());
@@ -67,7 +67,7 @@ pub(super) fn judge(
 }
 
 fn statistics() -> Statistics {
-    Statistics { status: Status::Unknown, ..Statistics::of(NAME) }
+    Statistics::of(NAME, Status::Unknown)
 }
 
 /// What would make an answer certify: the multipliers with the other sign, the polish, both; else accuracy.

@@ -15,14 +15,16 @@ use crate::cli::run::folder::{Claim, Folder};
 use crate::cli::run::memory::Memory;
 use crate::cli::run::pictures::Pictures;
 use crate::cli::run::progress::Progress;
-use crate::cli::run::setup::{Setup, check_refinements, solver};
+use crate::cli::run::setup::{Setup, check_refinements, solver, unused_groups};
 use crate::cli::run::watch::Watch;
-use crate::cli::terminal::{grouped, print};
+use crate::cli::terminal::print;
 use crate::discretization::Discretization;
-use crate::mesh::{MAX_VERTICES, Mesh};
+use crate::formats::gmsh::PhysicalGroup;
+use crate::mesh::{MAX_VERTICES, Mesh, gmsh_nodes};
 use crate::problem::ContactProblem;
 use crate::solver::SolverOptions;
-use crate::study::comparison::{Comparison, Place, Row, SQUARE, square_mesh, square_problem};
+use crate::study::comparison::{Comparison, MEMORY, Place, Row, SQUARE, square_mesh, square_problem};
+use crate::text::grouped;
 use files::{read_rows, write_results, write_rows};
 
 /// Where results go without a case file and without `--out`.
@@ -36,17 +38,19 @@ pub(crate) fn run(arguments: &BenchArguments, watch: &Watch) -> Result<(), Failu
         None => bench.run_family(&arguments.sizes)?,
         Some(path) => bench.run_case(path.clone(), arguments)?,
     };
-    let Bench { title, rows, measured, .. } = bench;
+    let Bench { title, rows, measured, groups, .. } = bench;
     let pictures = Pictures::new(&arguments.pictures, Clock::new(None));
     write_results(&folder, &title, &rows, &pictures)?;
     drop(progress);
     if !arguments.quiet {
-        print(&table::table(&title, &rows, (folder.path(), &pictures.files(TIMES))))?;
+        let table = table::table(&title, &rows, (folder.path(), &pictures.files(TIMES)));
+        print(&(table + &unused_groups(&groups)))?;
     }
     if arguments.no_run || rows[..measured].iter().any(|row| row.certified) {
         return Ok(());
     }
-    let remedy = "allow more time by --time-limit, or choose others by --solvers";
+    let remedy =
+        "allow more time by --time-limit, more memory by --memory-limit, or choose others by --solvers";
     Err(Failure::NotCertified(format!("{title}: no solver has a certified solution ({ROWS}); {remedy}")))
 }
 
@@ -59,6 +63,10 @@ struct Bench<'a> {
     /// Those measured so far, before those of other files.
     rows: Vec<Row>,
     measured: usize,
+    memory: Memory,
+    /// What the mesh file of a case has that is not used: its physical groups. And Gmsh's numbers of its vertices.
+    groups: Vec<PhysicalGroup>,
+    node_tags: Vec<u64>,
     progress: &'a Progress,
     watch: &'a Watch,
 }
@@ -67,8 +75,9 @@ impl<'a> Bench<'a> {
     /// Reads the rows of other files and makes the folder: what can fail does so before anything is measured.
     fn new(arguments: &'a BenchArguments, progress: &'a Progress, watch: &'a Watch) -> Result<Self, Failure> {
         let mut rows = Vec::new();
+        let memory = Memory::new(arguments.memory_limit);
         for path in &arguments.merge {
-            rows.extend(read_rows(path, Memory::new(None))?);
+            rows.extend(read_rows(path, memory)?);
         }
         let built = || BackendName::ALL.into_iter().filter(|backend| backend.is_built()).collect();
         let mut solvers = Vec::new();
@@ -89,6 +98,9 @@ impl<'a> Bench<'a> {
             arguments,
             rows,
             measured: 0,
+            memory,
+            groups: Vec::new(),
+            node_tags: Vec::new(),
             progress,
             watch,
         })
@@ -130,8 +142,12 @@ impl<'a> Bench<'a> {
         sizes.sort_unstable();
         sizes.dedup();
         if let Some(n) = sizes.iter().find(|&&n| !((n as f64 + 1.0).powi(2) <= MAX_VERTICES)) {
+            let n = grouped(*n);
             let message = format!("{n} x {n} cells have more than {MAX_VERTICES:.0e} vertices: choose fewer");
             return Err(bad_input(&message));
+        }
+        if let Some(&n) = sizes.last() {
+            self.check_memory("--sizes", (n as f64 + 1.0).powi(2))?;
         }
         let problem = square_problem().map_err(|error| bad_input(&error))?;
         let folder = self.claim(&CaseId::built_in(FAMILY), &format!("cells {sizes:?}"))?;
@@ -147,9 +163,13 @@ impl<'a> Bench<'a> {
     /// A case on its mesh and its refinements.
     fn run_case(&mut self, path: PathBuf, bench: &BenchArguments) -> Result<Folder, Failure> {
         let levels = bench.levels;
-        let arguments = CaseArguments { path, refine: 0, memory_limit: None, quiet: false };
-        let Setup { name, id, case, mut family, .. } = Setup::new(&arguments, self.progress)?;
-        check_refinements(&name, family.mesh().points().len() as f64, levels - 1)?;
+        let memory_limit = bench.memory_limit;
+        let arguments = CaseArguments { path, refine: 0, memory_limit, quiet: false };
+        let Setup { name, id, case, mut family, groups, node_tags, .. } =
+            Setup::new(&arguments, self.progress)?;
+        let finest = check_refinements(&name, family.mesh().points().len() as f64, levels - 1)?;
+        self.check_memory(&name, finest)?;
+        (self.groups, self.node_tags) = (groups, node_tags);
         self.title.clone_from(&case.title);
         self.options.tolerance = bench.tolerance.unwrap_or(case.solver.tolerance.or_default());
         let stem = arguments.path.file_stem().unwrap_or(arguments.path.as_os_str());
@@ -159,14 +179,23 @@ impl<'a> Bench<'a> {
         let mut comparison = self.comparison();
         for level in 0..levels {
             if level > 0 {
-                family.refine().map_err(|error| Failure::Input(format!("{name}: [mesh]: {error}")))?;
+                family.refine().map_err(|error| {
+                    let vertices = gmsh_nodes(&error.vertices(), &self.node_tags);
+                    Failure::Input(format!("{name}: [mesh]: {error}{vertices}"))
+                })?;
             }
             self.measure(&mut comparison, &folder, &stem, level, &case.problem, family.mesh())?;
         }
         Ok(folder)
     }
 
-    /// Runs all solvers on one mesh. After each, all rows are in the file: a long run may be stopped.
+    /// Refuses meshes of which the finest does not fit into memory, whatever the solver.
+    fn check_memory(&self, name: &str, finest: f64) -> Result<(), Failure> {
+        // Of all solvers, this one needs the least.
+        self.memory.check(name, BackendName::Multigrid, finest)
+    }
+
+    /// Runs all solvers on one mesh, but for those that need more memory than there is. After each, all rows are in the file: a long run may be stopped.
     fn measure(
         &mut self,
         comparison: &mut Comparison,
@@ -178,12 +207,18 @@ impl<'a> Bench<'a> {
     ) -> Result<(), Failure> {
         let vertices = grouped(mesh.points().len());
         self.progress.stage(format!("assembling on {vertices} vertices"));
-        let d = Discretization::new(problem, mesh.clone())
-            .map_err(|error| Failure::Input(format!("{name}: {error}")))?;
+        let d = Discretization::new(problem, mesh.clone()).map_err(|error| {
+            let vertices: Vec<usize> = error.vertex().into_iter().collect();
+            Failure::Input(format!("{name}: {error}{}", gmsh_nodes(&vertices, &self.node_tags)))
+        })?;
         let place = Place { problem: name, n, discretization: &d };
         for index in 0..self.solvers.len() {
             self.progress.stage(format!("{} on {vertices} vertices", self.solvers[index].as_str()));
-            let row = comparison.row(index, &place);
+            let row = if self.memory.suffices(self.solvers[index], mesh.points().len() as f64) {
+                comparison.row(index, &place)
+            } else {
+                comparison.left_out(index, &place, MEMORY)
+            };
             // A new measurement takes the place of an old one.
             self.rows.retain(|old| !old.repeats(&row));
             self.rows.insert(self.measured, row);

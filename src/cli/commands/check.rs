@@ -8,13 +8,14 @@ use crate::cli::failure::Failure;
 use crate::cli::run::progress::Progress;
 use crate::cli::run::setup::{Setup, options, solver, unused_groups};
 use crate::cli::run::watch::Watch;
-use crate::cli::terminal::{fixed, grouped, print};
+use crate::cli::terminal::{fixed, print, wrapped};
 use crate::discretization::Discretization;
 use crate::fem::element_loads;
 use crate::flux::{FluxDefects, Reconstruction, Reconstructor};
 use crate::mesh::SubTriangulation;
 use crate::problem::ContactProblem;
 use crate::study::Tolerance;
+use crate::text::grouped;
 
 /// The second line above a result that nobody has polished.
 const AS_IT_IS: &str = "as it is";
@@ -52,7 +53,7 @@ pub(crate) fn run(arguments: &CheckArguments, watch: &Watch) -> Result<(), Failu
     if !arguments.case.quiet {
         let unknowns = grouped(2 * d.interior().len());
         let title = format!(
-            "{}: {unknowns} unknowns, tolerance {:.0e}\n",
+            "{}: {unknowns} unknowns, tolerance {:.0e}",
             setup.case.title,
             setup.case.solver.tolerance.or_default()
         );
@@ -61,7 +62,7 @@ pub(crate) fn run(arguments: &CheckArguments, watch: &Watch) -> Result<(), Failu
                 .map_err(|error| Failure::Input(format!("{}: {error}", setup.name)))?,
             None => String::new(),
         };
-        print(&(title + &table(&columns) + &fluxes + &unused_groups(&setup.groups)))?;
+        print(&(wrapped(&title, 2) + "\n" + &table(&columns) + &fluxes + &unused_groups(&setup.groups)))?;
     }
     match columns.iter().filter(|column| column.must_certify).find_map(|column| column.result.as_ref().err())
     {

@@ -15,13 +15,18 @@ use crate::cli::run::pictures::Pictures;
 use crate::cli::run::progress::Progress;
 use crate::cli::run::setup::{Setup, check_refinements, options, solver, too_early, unused_groups};
 use crate::cli::run::watch::Watch;
-use crate::cli::terminal::{grouped, print};
+use crate::cli::terminal::{note, print, wrapped};
+use crate::estimate::LoadWarning;
 use crate::pictures::{RatesPicture, Series, render_rates};
 use crate::qp::TimeLimit;
 use crate::study::{ConvergenceStudy, LevelErrors, MEASURES, fitted_rate, markdown, rate};
+use crate::text::grouped;
 
 /// The slopes to compare with: those of the theory, and that of a discontinuous action in L2.
 const SLOPES: [f64; 4] = [0.5, 1.0, 1.5, 2.0];
+
+const INDEX: &str = "index: the bound of the error in the energy norm, guaranteed up to the quadrature of the loads, over \
+                     that error";
 
 /// Each refinement makes four times as many triangles, and the built-in solvers need time in proportion.
 const GROWTH: f64 = 4.0;
@@ -72,11 +77,15 @@ pub(crate) fn run(arguments: &ConvergeArguments, watch: &Watch) -> Result<(), Fa
     };
     let stop = add_levels(&setup.name, &mut study, &mut levels, &limits, &kept, &progress)?;
     watch.lift();
+    // Also where all levels were there before.
+    let warnings = levels.last().map_or_else(|| Ok(Vec::new()), |last| study.into_warnings(last));
+    let warnings = warnings.map_err(|error| failure(&setup.name, &error, &setup.node_tags))?;
     let left_out = write_picture(&folder, &title, &levels, &pictures)?;
     let drawn = if left_out.is_empty() { pictures.files(RATES) } else { Vec::new() };
     drop(progress);
     if !arguments.case.quiet {
-        print(&(table(&title, &levels, (folder.path(), &drawn), &left_out) + &unused_groups(&setup.groups)))?;
+        let table = table(&title, &levels, &warnings, (folder.path(), &drawn), &left_out);
+        print(&(table + &unused_groups(&setup.groups)))?;
     }
     stop.map_or(Ok(()), |why| {
         let (done, of) = (levels.len(), arguments.levels);
@@ -178,10 +187,11 @@ fn typeset(name: &str) -> String {
 fn table(
     title: &str,
     levels: &[LevelErrors],
+    warnings: &[LoadWarning],
     (folder, drawn): (&Path, &[&str]),
     left_out: &[&str],
 ) -> String {
-    let mut text = format!("{title}\n  vertices");
+    let mut text = wrapped(title, 2) + "\n  vertices";
     for measure in MEASURES {
         text += &format!(" {:>8}", shortened(measure.name));
     }
@@ -191,7 +201,7 @@ fn table(
         for measure in MEASURES {
             text += &format!(" {:>8.2e}", (measure.of)(level));
         }
-        text += &format!(" {:>8.2}\n", level.effectivity());
+        text += &format!(" {:>8}\n", index_text(level.effectivity()));
         if k > 0 {
             text += &format!("{:>10}", "rate");
             for measure in MEASURES {
@@ -207,12 +217,29 @@ fn table(
         }
         text.push('\n');
     }
-    text += "  index: the guaranteed bound over the true error in the energy norm\n";
+    text += &note(INDEX);
+    text += &warning_lines(levels, warnings);
     if !left_out.is_empty() {
-        text += &format!("  left out: {}\n", left_out_line(left_out));
+        text += &note(&format!("left out: {}", left_out_line(left_out)));
     }
     let files = [&[ERRORS, ERRORS_TABLE], drawn].concat().join(", ");
-    text + &format!("  files: {}/{{{files}}}\n", folder.display())
+    text + &note(&format!("files: {}/{{{files}}}", folder.display()))
+}
+
+/// The loads of which the bound on the finest mesh may know too little.
+fn warning_lines(levels: &[LevelErrors], warnings: &[LoadWarning]) -> String {
+    let vertices = grouped(levels.last().map_or(0, |last| last.vertices));
+    let line = |warning| note(&format!("warning, at the finest level ({vertices} vertices): {warning}"));
+    warnings.iter().map(line).collect()
+}
+
+/// Where there is no error, there is no index.
+fn index_text(index: f64) -> String {
+    match index {
+        index if !index.is_finite() => "-".into(),
+        index if index < 1e5 => format!("{index:.2}"),
+        index => format!("{index:.1e}"),
+    }
 }
 
 fn rate_text(rate: Option<f64>) -> String {

@@ -38,6 +38,6 @@ pub(super) fn left_out_line(names: &[&str]) -> String {
     if names.is_empty() {
         String::new()
     } else {
-        format!("{}: the time was over (--time-limit)", names.join(", "))
+        format!("{}: no time was left (--time-limit)", names.join(", "))
     }
 }

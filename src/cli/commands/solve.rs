@@ -16,7 +16,7 @@ use crate::cli::run::pictures::Pictures;
 use crate::cli::run::progress::Progress;
 use crate::cli::run::setup::{Setup, options, solver, too_early, unused_groups};
 use crate::cli::run::watch::Watch;
-use crate::cli::terminal::{fields, fixed, grouped, print};
+use crate::cli::terminal::{fields, fixed, print, wrapped};
 use crate::discretization::Discretization;
 use crate::fem::element_loads;
 use crate::flux::{Reconstruction, Reconstructor};
@@ -26,9 +26,10 @@ use crate::pictures::{MeshPicture, render_mesh};
 use crate::qp::{Status, TimeLimit};
 use crate::solver::{PolishReport, Statistics};
 use crate::study::{AccuracyError, Bounded, solve_bounded};
+use crate::text::grouped;
 
 /// What an interrupted run has to say.
-const UNTOUCHED: &str = "it is as it was";
+const UNTOUCHED: &str = "nothing there was changed";
 
 pub(crate) fn run(arguments: &SolveArguments, watch: &Watch) -> Result<(), Failure> {
     let clock = Clock::new(arguments.time_limit);
@@ -133,9 +134,8 @@ fn too_late(
 ) -> impl Fn() -> Failure + Send + Sync + 'static {
     let settings = &setup.case.solver;
     let statistics = Statistics {
-        status: Status::TimeLimit,
         solve_seconds: settings.time_limit.map_or(0.0, TimeLimit::seconds),
-        ..Statistics::of(settings.backend.as_str())
+        ..Statistics::of(settings.backend.as_str(), Status::TimeLimit)
     };
     let rejected = Rejected::without_result(statistics);
     let tolerance = settings.tolerance.or_default();
@@ -259,7 +259,7 @@ fn table(
         ),
         ("error", error_line(summary, unloaded)),
         ("guaranteed", guarantee(summary)),
-        ("warning", summary.warnings.join("; ")),
+        ("warning", summary.warnings.join("\n")),
         ("energy", number(summary.energy)),
         (
             "contact",
@@ -285,8 +285,7 @@ fn table(
         ("left out", left_out_line(&summary.left_out)),
         ("files", format!("{}/{{{files}}}", folder.display())),
     ];
-    let rows: Vec<_> = rows.into_iter().filter(|(_, value)| !value.is_empty()).collect();
-    format!("{}\n{}", summary.title, fields(&rows))
+    format!("{}\n{}", wrapped(&summary.title, 2), fields(&rows))
 }
 
 /// What of a residual that is larger than the tolerance is more than rounding.
@@ -301,7 +300,8 @@ fn solver_line(summary: &Summary) -> String {
     let Summary { backend, status, iterations, level_iterations, .. } = summary;
     let levels = level_iterations.len();
     let on_levels = if levels > 1 { format!(" on the finest of {levels} levels") } else { String::new() };
-    format!("{backend}: {status} in {iterations} iterations{on_levels}")
+    let plural = if *iterations == 1 { "" } else { "s" };
+    format!("{backend}: {status} in {} iteration{plural}{on_levels}", grouped(*iterations))
 }
 
 /// What the bound rests on.
@@ -319,8 +319,8 @@ fn error_line(summary: &Summary, unloaded: bool) -> String {
     let Some(bound) = summary.error_bound else { return String::new() };
     let relative = match summary.relative_error_bound {
         Some(relative) => format!("{:.2} %", 100.0 * relative),
-        None if unloaded => "nothing is loaded: rounding".into(),
-        None => "more than half of it: refine".into(),
+        None if unloaded => "no load: rounding".into(),
+        None => "no relative bound: refine".into(),
     };
     format!("at most {bound:.3e} in the energy norm ({relative})")
 }

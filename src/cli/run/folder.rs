@@ -105,7 +105,7 @@ impl Folder {
         };
         if known.fingerprint != claim.case.fingerprint {
             let why = if known.case == claim.case.name {
-                format!("holds results of {} as it was before it was changed", known.case)
+                format!("holds results of an earlier version of {}", known.case)
             } else {
                 format!("holds results of another case, {}", known.case)
             };

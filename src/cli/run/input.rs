@@ -6,6 +6,7 @@ use std::path::Path;
 
 use super::memory::Memory;
 use crate::formats::open_regular;
+use crate::text::grouped;
 
 /// What a file is read as. The bytes of memory for each of the file, at the peak of reading, are the most that were measured
 /// on inputs made for it (`tests/hostile/targets.rs`).
@@ -46,15 +47,16 @@ impl Input {
 /// As [`open_regular`], and of the kind [`OutOfMemory`](io::ErrorKind::OutOfMemory), with its remedy, when it is too large.
 pub(crate) fn open(path: &Path, input: Input, memory: Memory) -> io::Result<File> {
     let file = open_regular(path)?;
-    let bytes = file.metadata()?.len() as f64;
+    let length = file.metadata()?.len();
     memory
-        .check_bytes(input.bytes_per_byte() * bytes)
+        .check_bytes(input.bytes_per_byte() * length as f64)
         .map(|()| file)
         .map_err(|[needed, available]| {
             io::Error::new(
                 io::ErrorKind::OutOfMemory,
                 format!(
-                    "to read {bytes:.1e} bytes takes about {needed:.2} GiB of memory, and there are {available:.2}: {}, or allow more with --memory-limit",
+                    "reading {} bytes takes about {needed:.2} GiB of memory, and {available:.2} are available: {}, or allow more with --memory-limit",
+                    grouped(length as usize),
                     input.remedy()
                 ),
             )
@@ -74,7 +76,7 @@ mod tests {
         let error = open(Input::Mesh, 0.5).unwrap_err();
         assert_eq!(
             error.to_string(),
-            "to read 1.0e8 bytes takes about 0.59 GiB of memory, and there are 0.50: make a coarser mesh, or allow more with --memory-limit"
+            "reading 104,857,600 bytes takes about 0.59 GiB of memory, and 0.50 are available: make a coarser mesh, or allow more with --memory-limit"
         );
         assert!(open(Input::Mesh, 0.6).is_ok() && open(Input::Arrays, 0.5).is_ok());
         assert!(open(Input::Rows, 0.6).is_err() && open(Input::CaseFile, 30.0).is_err());

@@ -27,7 +27,7 @@ pub(crate) const MEMORY: &str = "the next level would need more memory than ther
 /// What to say when a solver does not come back in time.
 pub(crate) fn too_late(name: &str) -> Failure {
     Failure::NotCertified(format!(
-        "{name}: the time was over within a level; {KEPT}, given more time (--time-limit)"
+        "{name}: the time limit has passed within a level; {KEPT}, given more time (--time-limit)"
     ))
 }
 

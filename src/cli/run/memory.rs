@@ -48,7 +48,7 @@ impl Memory {
             _ => " or the solver multigrid",
         };
         Err(Failure::Input(format!(
-            "{name}: about {vertices:.1e} vertices need about {needed:.2} GiB of memory, and there are {available:.2}: take a coarser mesh{other}, or allow more with --memory-limit"
+            "{name}: about {vertices:.1e} vertices need about {needed:.2} GiB of memory, and {available:.2} are available: take a coarser mesh{other}, or allow more with --memory-limit"
         )))
     }
 }

@@ -10,7 +10,6 @@ use super::progress::Progress;
 use crate::cli::args::CaseArguments;
 use crate::cli::case::{BackendName, CaseFile, CaseId, MeshSource, SolverSettings};
 use crate::cli::failure::Failure;
-use crate::cli::terminal::grouped;
 use crate::discretization::Discretization;
 use crate::formats::gmsh::{PhysicalGroup, parse};
 use crate::mesh::{GmshMesh, MAX_VERTICES, MeshFamily, ReadError, estimated_vertices, generate, gmsh_nodes};
@@ -18,7 +17,7 @@ use crate::output::Seconds;
 #[cfg(any(feature = "clarabel", feature = "osqp"))]
 use crate::solver::QpSolver;
 use crate::solver::{ActiveSet, Auto, ContactSolver, Multigrid, SolverOptions};
-use crate::text::excerpt;
+use crate::text::{excerpt, grouped};
 
 /// The case and its meshes.
 pub(crate) struct Setup {
@@ -79,12 +78,12 @@ impl Setup {
 /// The groups that a run does not use, in one line for the terminal; nothing where there are none.
 pub(crate) fn unused_groups(groups: &[PhysicalGroup]) -> String {
     /// Names are left out where the line would become wider than 80 columns.
-    const WIDEST: usize = 80 - ", and 1000 more".len();
+    const WIDEST: usize = 80 - ", and 1,000 more".len();
     let mut line = String::from("  physical groups not used:");
     for (k, group) in groups.iter().enumerate() {
         let name = excerpt(&group.to_string());
         if k > 0 && line.chars().count() + 2 + name.chars().count() > WIDEST {
-            return format!("{line}, and {} more\n", groups.len() - k);
+            return format!("{line}, and {} more\n", grouped(groups.len() - k));
         }
         line += if k > 0 { ", " } else { " " };
         line += &name;
@@ -165,8 +164,10 @@ fn make_mesh(name: &str, case: &CaseFile, further: usize, memory: Memory) -> Res
 pub(crate) fn too_early(case: &Path) -> impl Fn() -> Failure + Send + Sync + 'static {
     let name = case.display().to_string();
     move || {
-        let why = "the time was over before the first solve, and nothing is written";
-        Failure::NotCertified(format!("{name}: {why}; allow more, or take a coarser mesh (--time-limit)"))
+        let why = "the time limit has passed before the first solve, and nothing was written";
+        Failure::NotCertified(format!(
+            "{name}: {why}; allow more time (--time-limit), or take a coarser mesh"
+        ))
     }
 }
 

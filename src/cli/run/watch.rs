@@ -187,7 +187,7 @@ fn next(inbox: &Receiver<Event>, alarm: Option<&Alarm>) -> Option<Event> {
 fn interrupted(folder: Option<&(PathBuf, &str)>) -> Failure {
     Failure::Interrupted(match folder {
         Some((folder, says)) => format!("interrupted: {}: {says}", folder.display()),
-        None => "interrupted: nothing is written".into(),
+        None => "interrupted: nothing was written".into(),
     })
 }
 
@@ -252,7 +252,7 @@ mod tests {
     #[test]
     fn an_interrupted_run_is_not_waited_for() {
         let interrupted = follow_to(|_| for_ever(), true);
-        assert_eq!(interrupted, Err(Failure::Interrupted("interrupted: nothing is written".into())));
+        assert_eq!(interrupted, Err(Failure::Interrupted("interrupted: nothing was written".into())));
     }
 
     #[test]

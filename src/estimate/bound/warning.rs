@@ -25,8 +25,8 @@ pub enum LoadWarning {
 }
 
 impl LoadWarning {
-    /// Those of both loads of `d`, beside a bound.
-    pub(super) fn all(d: &Discretization, bound: f64) -> Vec<Self> {
+    /// Those of both loads of `d`, beside a bound of the energy error on its mesh.
+    pub(crate) fn all(d: &Discretization, bound: f64) -> Vec<Self> {
         let difference = d.quadrature_difference();
         let of = |i: usize| {
             let membrane = i + 1;

@@ -4,6 +4,8 @@ use std::fmt;
 
 use thiserror::Error;
 
+use crate::text::grouped;
+
 /// A position in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Place {
@@ -79,8 +81,9 @@ pub enum GmshError {
     },
     /// A count that is negative or larger than the rest of the file can hold.
     #[error(
-        "{place}, ${section}: {count} {of} are declared, but {left} bytes are left; \
-         the file is cut short or damaged: write it again with Gmsh"
+        "{place}, ${section}: {count} {of} are declared, but {} bytes are left; \
+         the file is cut short or damaged: write it again with Gmsh",
+        grouped(*left)
     )]
     Count {
         /// Where.
@@ -171,8 +174,9 @@ pub enum GmshError {
     },
     /// Only points and lines.
     #[error(
-        "no triangle among the elements ({others} points and lines); mesh the surface (`gmsh -2`), and if there \
-         are physical groups, put the surface into one or set Mesh.SaveAll = 1"
+        "no triangle among the elements ({} points and lines); mesh the surface (`gmsh -2`), and if there \
+         are physical groups, put the surface into one or set Mesh.SaveAll = 1",
+        grouped(*others)
     )]
     NoTriangle {
         /// Number of other elements.

@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use super::size::MAX_COORDINATE;
 use crate::mesh::Mesh;
-use crate::text::Number;
+use crate::text::{Number, grouped};
 
 /// Why points and triangles are not a triangulation. Vertices and triangles are counted from 0.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -23,7 +23,8 @@ pub enum MeshError {
     },
     /// A triangle names a vertex that is not there.
     #[error(
-        "triangle {triangle} names vertex {vertex}, but there are only {vertices} vertices (counted from 0)"
+        "triangle {triangle} names vertex {vertex}, but there are only {} vertices (counted from 0)",
+        grouped(*vertices)
     )]
     NoSuchVertex {
         /// The triangle.

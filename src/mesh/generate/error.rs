@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::text::Number;
+use crate::text::{Number, grouped};
 
 /// More vertices than this are refused: the system of a mesh of this size needs about 64 GiB.
 pub(crate) const MAX_VERTICES: f64 = 5e7;
@@ -85,7 +85,9 @@ pub enum GenerateError {
     Rounding,
     /// The refinement takes many more vertices than expected.
     #[error(
-        "triangles with angles of {min_angle} degrees take more than {vertices} vertices here, where `size` alone asks for about {expected}: the polygon has parts much narrower than `size`; give `min_angle = 0`, or a `size` as small as they are"
+        "triangles with angles of {min_angle} degrees take more than {} vertices here, where `size` alone asks for about {}: the polygon has parts much narrower than `size`; give `min_angle = 0`, or a `size` as small as they are",
+        grouped(*vertices),
+        grouped(*expected)
     )]
     TooNarrow {
         /// The least angle that was asked for, degrees.

@@ -205,7 +205,7 @@ mod tests {
         let message = polygon(&strip, &[], 0.5, 25.0).unwrap_err().to_string();
         assert_eq!(
             message,
-            "triangles with angles of 25 degrees take more than 10500 vertices here, where `size` alone asks for about 10: the polygon has parts much narrower than `size`; give `min_angle = 0`, or a `size` as small as they are"
+            "triangles with angles of 25 degrees take more than 10,500 vertices here, where `size` alone asks for about 10: the polygon has parts much narrower than `size`; give `min_angle = 0`, or a `size` as small as they are"
         );
         for (size, min_angle) in [(0.5, 0.0), (0.01, 25.0)] {
             assert!(polygon(&strip, &[], size, min_angle).unwrap().quality().min_angle >= min_angle);

@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use super::program::MAX_DEPTH;
+use crate::text::grouped;
 
 /// Longest source in bytes: far above any formula, low enough that reading one never takes noticeable time.
 pub(super) const MAX_BYTES: usize = 1 << 16;
@@ -15,7 +16,7 @@ pub enum ExpressionError {
     #[error("the expression is empty; write a formula in x and y, such as `1 + x*y`")]
     Empty,
     /// More bytes than a source may have.
-    #[error("the expression has {bytes} bytes, the limit is {MAX_BYTES}; shorten it")]
+    #[error("the expression has {} bytes, the limit is {}; shorten it", grouped(*bytes), grouped(MAX_BYTES))]
     TooLong {
         /// Length of the source in bytes.
         bytes: usize,

@@ -146,7 +146,7 @@ fn contact_is_found_at_the_tip_of_a_deep_mesh() {
         assert!(half.wrong(&active, &gap, SLIGHT * d.scales().displacement).is_empty());
         assert!(!half.wrong(&active, &gap, 0.0).is_empty());
         let cut = settle(&d, active, &limits(1)).unwrap();
-        let statistics = Statistics::of("cut");
+        let statistics = Statistics::of("cut", cut.status);
         let cut = Candidate { displacement: cut.displacement, multiplier: cut.multiplier, statistics };
         assert!(certify(&d, cut, TOLERANCE).is_err(), "it is no solution");
     }

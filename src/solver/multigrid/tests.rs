@@ -191,7 +191,7 @@ fn on_stretched_triangles_the_levels_are_algebraic() {
     let mut prepared = multigrid.prepare(&d);
     let [first, again] = [(); 2].map(|()| prepared.solve(&options()).expect("it runs"));
     assert_eq!(first.statistics.stalled, *tried);
-    assert!(again.statistics.stalled.is_empty());
+    assert_eq!(again.statistics.stalled, *tried, "the record stays");
     assert_eq!(first.displacement, candidate.displacement);
     assert_eq!(again.displacement, candidate.displacement);
     assert!(certify(&d, candidate, TOLERANCE).is_ok());

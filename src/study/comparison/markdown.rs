@@ -1,6 +1,7 @@
 //! A comparison as Markdown.
 
 use super::{Row, curves, slope};
+use crate::text::grouped;
 
 /// The rows as a table, and the exponents of the times as another one.
 pub fn markdown(rows: &[Row]) -> String {
@@ -9,14 +10,14 @@ pub fn markdown(rows: &[Row]) -> String {
          | seconds | work units | contact vertices |\n\
          |---|---:|---:|---|---|---:|---|---|---:|---:|---:|---:|---:|\n",
     );
-    let count = |value: Option<usize>| value.map_or_else(String::new, |value| value.to_string());
+    let count = |value: Option<usize>| value.map_or_else(String::new, grouped);
     let number =
         |value: Option<f64>, digits: usize| value.map_or_else(String::new, |value| rounded(value, digits));
     for row in rows {
         let cells = [
             row.problem.clone(),
             count(row.n),
-            row.vertices.to_string(),
+            grouped(row.vertices),
             row.solver.clone(),
             row.origin.clone(),
             count(row.threads),
@@ -40,12 +41,13 @@ pub fn markdown(rows: &[Row]) -> String {
     text
 }
 
-/// A positive number with so many digits, without a power of ten.
+/// A positive number with so many digits at least, without a power of ten.
 fn rounded(value: f64, digits: usize) -> String {
     let before_the_point =
         if value > 0.0 && value.is_finite() { value.log10().floor() as i32 + 1 } else { 1 };
     let decimals = (digits as i32 - before_the_point).clamp(0, 9) as usize;
-    format!("{value:.decimals$}")
+    let is_whole = decimals == 0 && (0.0..1e15).contains(&value);
+    if is_whole { grouped(value.round() as usize) } else { format!("{value:.decimals$}") }
 }
 
 fn in_one_cell(text: &str) -> String {
@@ -62,7 +64,7 @@ mod tests {
             (0.0123456, "0.0123"),
             (1.23456, "1.23"),
             (123.456, "123"),
-            (12345.6, "12346"),
+            (12345.6, "12,346"),
             (0.0, "0.00"),
             (f64::INFINITY, "inf"),
         ];

@@ -10,6 +10,7 @@ use crate::cli::run::memory::Memory;
 use crate::cli::run::pictures::Pictures;
 use crate::pictures::{Drawing, Times, TimesPicture, render_times};
 use crate::study::comparison::{Curve, ORIGIN, Row, curves, markdown};
+use crate::text::grouped;
 
 /// The slopes to compare with: work in proportion to the vertices, and that of a sparse factorisation in the plane.
 const SLOPES: [f64; 2] = [1.0, 1.5];
@@ -31,7 +32,10 @@ pub(super) fn read_rows(path: &Path, memory: Memory) -> Result<Vec<Row>, Failure
         reader.deserialize().take(MAX_ROWS + 1).collect::<Result<_, _>>().map_err(bad_input)?;
     if rows.len() > MAX_ROWS {
         let path = path.display();
-        return Err(Failure::Input(format!("{path}: more than {MAX_ROWS} rows: merge those to be compared")));
+        return Err(Failure::Input(format!(
+            "{path}: more than {} rows: merge those to be compared",
+            grouped(MAX_ROWS)
+        )));
     }
     Ok(rows)
 }
@@ -115,7 +119,7 @@ mod tests {
         };
         assert_eq!(read(MAX_ROWS).map(|rows| rows.len()), Ok(MAX_ROWS));
         let message = read(MAX_ROWS + 1).unwrap_err().to_string();
-        assert!(message.ends_with("more than 5000 rows: merge those to be compared"), "{message}");
+        assert!(message.ends_with("more than 5,000 rows: merge those to be compared"), "{message}");
     }
 
     #[test]

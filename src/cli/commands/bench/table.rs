@@ -4,16 +4,17 @@ use std::path::Path;
 
 use super::files::solver_name;
 use crate::cli::run::files::{ROWS, ROWS_TABLE};
-use crate::cli::terminal::grouped;
+use crate::cli::terminal::{note, wrapped};
 use crate::study::comparison::{Row, curves, slope};
+use crate::text::grouped;
 
 /// Letters of a solver's name, and of a status.
-const NAME: usize = 22;
+const NAME: usize = 20;
 const STATUS: usize = 17;
 
 /// The rows mesh by mesh, and the fitted slopes.
 pub(super) fn table(title: &str, rows: &[Row], (folder, pictures): (&Path, &[&str])) -> String {
-    let mut text = format!("{title}\n");
+    let mut text = wrapped(title, 2) + "\n";
     let mut meshes: Vec<(&str, usize)> = Vec::new();
     for row in rows {
         if !meshes.contains(&mesh(row)) {
@@ -23,8 +24,9 @@ pub(super) fn table(title: &str, rows: &[Row], (folder, pictures): (&Path, &[&st
     meshes.sort_by_key(|&(problem, vertices)| (first_of(rows, problem), vertices));
     for &of in &meshes {
         let on_mesh = || rows.iter().filter(|row| mesh(row) == of);
-        let n = on_mesh().find_map(|row| row.n).map_or_else(String::new, |n| format!(", n = {n}"));
-        text += &format!("\n  {}{n}: {} vertices\n", of.0, grouped(of.1));
+        let n = on_mesh().find_map(|row| row.n).map_or_else(String::new, |n| format!(", n = {}", grouped(n)));
+        text += "\n";
+        text += &note(&format!("{}{n}: {} vertices", of.0, grouped(of.1)));
         text +=
             &line(&["solver", "seconds", "work units", "residual", "iter.", "certified"].map(String::from));
         for row in on_mesh() {
@@ -40,7 +42,7 @@ pub(super) fn table(title: &str, rows: &[Row], (folder, pictures): (&Path, &[&st
         text += &format!("  {:NAME$} {exponent:>9}{problem}\n", cut(&solver_name(&curve), NAME));
     }
     let files = [&[ROWS, ROWS_TABLE], pictures].concat().join(", ");
-    text + &format!("  files: {}/{{{files}}}\n", folder.display())
+    text + &note(&format!("files: {}/{{{files}}}", folder.display()))
 }
 
 /// What tells meshes apart; other programs need not know `n`.
@@ -60,14 +62,14 @@ fn cells(row: &Row) -> [String; 6] {
         shown(row.total_seconds, |seconds| format!("{seconds:.4}")),
         shown(row.work_units, |units| grouped(units.round() as usize)),
         shown(row.residual, |residual| format!("{residual:.1e}")),
-        row.iterations.map_or_else(|| "-".into(), |count| count.to_string()),
+        row.iterations.map_or_else(|| "-".into(), grouped),
         if row.certified { "yes".into() } else { cut(&format!("no: {}", row.status), STATUS) },
     ]
 }
 
 /// At most 80 letters.
 fn line([solver, seconds, units, residual, iterations, certified]: &[String; 6]) -> String {
-    format!("  {solver:NAME$} {seconds:>9} {units:>11} {residual:>8} {iterations:>5}  {certified}\n")
+    format!("  {solver:NAME$} {seconds:>9} {units:>11} {residual:>8} {iterations:>7}  {certified}\n")
 }
 
 /// A text on one line, ended by an ellipsis if it is longer than `width` letters.
