@@ -10,7 +10,7 @@ mod failure;
 mod run;
 mod terminal;
 
-pub use case::{BackendName, CaseFile, MeshSource, SolverSettings};
+pub use case::{CaseFile, MeshSource, SolverName, SolverSettings};
 pub use failure::Failure;
 
 use std::io::{self, IsTerminal, Write};

@@ -6,7 +6,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, CommandFactory, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
-use super::case::BackendName;
+use super::case::SolverName;
 use crate::qp::TimeLimit;
 use crate::study::Tolerance;
 use crate::text::grouped;
@@ -72,7 +72,7 @@ pub(crate) struct SolveArguments {
     #[command(flatten)]
     pub(crate) case: CaseArguments,
     #[arg(long, value_name = "NAME", help = SOLVERS)]
-    pub(crate) backend: Option<BackendName>,
+    pub(crate) backend: Option<SolverName>,
     #[command(flatten)]
     pub(crate) output: OutputArguments,
     #[command(flatten)]
@@ -120,7 +120,7 @@ pub(crate) struct ConvergeArguments {
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) time_limit: Option<TimeLimit>,
     #[arg(long, value_name = "NAME", help = SOLVERS)]
-    pub(crate) backend: Option<BackendName>,
+    pub(crate) backend: Option<SolverName>,
     #[command(flatten)]
     pub(crate) output: OutputArguments,
     #[command(flatten)]
@@ -146,7 +146,7 @@ pub(crate) struct AdaptArguments {
     #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) time_limit: Option<TimeLimit>,
     #[arg(long, value_name = "NAME", help = SOLVERS)]
-    pub(crate) backend: Option<BackendName>,
+    pub(crate) backend: Option<SolverName>,
     #[command(flatten)]
     pub(crate) output: OutputArguments,
     #[command(flatten)]
@@ -169,7 +169,7 @@ pub(crate) struct BenchArguments {
     pub(crate) levels: usize,
     /// Solvers to compare [default: all of this build]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
-    pub(crate) solvers: Vec<BackendName>,
+    pub(crate) solvers: Vec<SolverName>,
     /// Time limit of each solve in seconds
     #[arg(long, value_name = "S", default_value = "60", value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) time_limit: TimeLimit,

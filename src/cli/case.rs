@@ -10,4 +10,4 @@ mod solver;
 pub use file::CaseFile;
 pub(super) use identity::CaseId;
 pub use mesh::MeshSource;
-pub use solver::{BackendName, SolverSettings};
+pub use solver::{SolverName, SolverSettings};

@@ -14,7 +14,7 @@ use crate::text::{Number, excerpt};
 #[derive(Debug, Clone, PartialEq)]
 pub struct SolverSettings {
     /// Which solver.
-    pub backend: BackendName,
+    pub name: SolverName,
     /// Largest relative residual, or one that follows the error bound.
     pub tolerance: Tolerance,
     /// Whether to polish.
@@ -27,7 +27,7 @@ pub struct SolverSettings {
 
 /// A solver, by name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum BackendName {
+pub enum SolverName {
     /// The interior-point solver Clarabel.
     Clarabel,
     /// The operator-splitting solver OSQP.
@@ -40,7 +40,7 @@ pub enum BackendName {
     Auto,
 }
 
-impl BackendName {
+impl SolverName {
     /// Every name.
     pub const ALL: [Self; 5] = [Self::Auto, Self::Multigrid, Self::ActiveSet, Self::Clarabel, Self::Osqp];
 
@@ -70,13 +70,13 @@ impl BackendName {
     }
 }
 
-impl FromStr for BackendName {
+impl FromStr for SolverName {
     type Err = String;
 
     fn from_str(name: &str) -> Result<Self, String> {
-        let known = Self::ALL.into_iter().find(|backend| backend.as_str() == name);
+        let known = Self::ALL.into_iter().find(|solver| solver.as_str() == name);
         match known {
-            Some(backend) if backend.is_built() => Ok(backend),
+            Some(solver) if solver.is_built() => Ok(solver),
             Some(_) => {
                 Err(format!("`{name}` is not in this build: build with `cargo build --features {name}`"))
             }
@@ -92,8 +92,9 @@ impl FromStr for BackendName {
 /// `[solver]`.
 pub(super) fn solver(top: &mut Section) -> Result<SolverSettings, Failure> {
     let mut section = top.section("solver")?;
-    let backend = match section.text("backend")? {
-        None => BackendName::Auto,
+    // `backend` in case files, of which there are many.
+    let name = match section.text("backend")? {
+        None => SolverName::Auto,
         Some(name) => name.parse().map_err(|problem: String| {
             section.error("backend", format!("= \"{}\": {problem}", excerpt(&name)))
         })?,
@@ -105,7 +106,7 @@ pub(super) fn solver(top: &mut Section) -> Result<SolverSettings, Failure> {
     let time_limit = section.number("time_limit")?.map(TimeLimit::from_seconds).transpose();
     let time_limit = time_limit.map_err(|error| section.error("time_limit", format!("= {error}")))?;
     let settings = SolverSettings {
-        backend,
+        name,
         tolerance,
         polish: section.flag("polish")?.unwrap_or(true),
         max_iterations: section.count("max_iterations", 1)?,

@@ -8,7 +8,7 @@ use std::time::Instant;
 use super::solution::{A_SOLUTION, left_out_line, write_solution};
 use crate::action::ContactSolution;
 use crate::cli::args::AdaptArguments;
-use crate::cli::case::{BackendName, CaseFile};
+use crate::cli::case::{CaseFile, SolverName};
 use crate::cli::failure::Failure;
 use crate::cli::run::clock::Clock;
 use crate::cli::run::files::{CHECKPOINT, HISTORY, LEVELS, MEMBRANES, MESH, Part, SOLUTION, SUMMARY};
@@ -61,10 +61,10 @@ pub(crate) fn run(arguments: &AdaptArguments, watch: &Watch) -> Result<(), Failu
     let pictures = Pictures::new(&arguments.pictures, clock);
     let progress = Progress::new(arguments.case.quiet);
     let mut setup = Setup::new(&arguments.case, &progress)?;
-    if let Some(backend) = arguments.backend {
-        setup.case.solver.backend = backend;
+    if let Some(name) = arguments.backend {
+        setup.case.solver.name = name;
     }
-    setup.check_memory(setup.case.solver.backend)?;
+    setup.check_memory(setup.case.solver.name)?;
     check_first_mesh(&setup, arguments.max_vertices)?;
     // Nobody may find a folder of which the run says that nothing was written.
     clock.check(too_early(&arguments.case.path))?;
@@ -75,12 +75,12 @@ pub(crate) fn run(arguments: &AdaptArguments, watch: &Watch) -> Result<(), Failu
     let (mut study, known) = resumed(&setup, &folder, levels.len())?;
     levels.truncate(known);
 
-    let limits = Limits::new(arguments, clock, &setup);
+    let budget = Budget::new(arguments, clock, &setup);
     let name = setup.name.clone();
     clock.watch(watch, move || too_late(&name));
     let mut seconds = levels.last().map_or(0.0, |last| last.solve_seconds + last.bound_seconds);
     let stop = loop {
-        if let Some(stop) = limits.stop(&levels, seconds) {
+        if let Some(stop) = budget.stop(&levels, seconds) {
             break stop;
         }
         let start = Instant::now();
@@ -147,7 +147,7 @@ fn study(setup: &Setup) -> AdaptiveStudy {
         setup.case.domain().cloned(),
         exact.clone(),
         setup.family.mesh().clone(),
-        solver(settings.backend),
+        solver(settings.name),
         options(settings),
         settings.tolerance,
     )
@@ -174,21 +174,21 @@ fn resumed(setup: &Setup, folder: &Folder, levels: usize) -> Result<(AdaptiveStu
 }
 
 /// What the run may take.
-struct Limits {
+struct Budget {
     tolerance: f64,
     vertices: f64,
     memory: Memory,
-    backend: BackendName,
+    solver: SolverName,
     clock: Clock,
 }
 
-impl Limits {
+impl Budget {
     fn new(arguments: &AdaptArguments, clock: Clock, setup: &Setup) -> Self {
         Self {
             tolerance: arguments.tolerance,
             vertices: arguments.max_vertices as f64,
             memory: setup.memory,
-            backend: setup.case.solver.backend,
+            solver: setup.case.solver.name,
             clock,
         }
     }
@@ -207,7 +207,7 @@ impl Limits {
         let seconds = growth * seconds + WRITING + WRITING_PER_VERTEX * vertices;
         if vertices > self.vertices {
             Some(Stop::Vertices)
-        } else if !self.memory.suffices(self.backend, MORE_MEMORY * vertices) {
+        } else if !self.memory.suffices(self.solver, MORE_MEMORY * vertices) {
             Some(Stop::Memory)
         } else if !self.clock.allows(seconds) {
             Some(Stop::Time)

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use crate::cli::args::{BenchArguments, CaseArguments};
-use crate::cli::case::{BackendName, CaseId};
+use crate::cli::case::{CaseId, SolverName};
 use crate::cli::failure::Failure;
 use crate::cli::run::clock::Clock;
 use crate::cli::run::files::{Part, ROWS, TIMES};
@@ -57,7 +57,7 @@ pub(crate) fn run(arguments: &BenchArguments, watch: &Watch) -> Result<(), Failu
 /// A comparison under way.
 struct Bench<'a> {
     title: String,
-    solvers: Vec<BackendName>,
+    solvers: Vec<SolverName>,
     options: SolverOptions,
     arguments: &'a BenchArguments,
     /// Those measured so far, before those of other files.
@@ -79,11 +79,11 @@ impl<'a> Bench<'a> {
         for path in &arguments.merge {
             rows.extend(read_rows(path, memory)?);
         }
-        let built = || BackendName::ALL.into_iter().filter(|backend| backend.is_built()).collect();
+        let built = || SolverName::ALL.into_iter().filter(|solver| solver.is_built()).collect();
         let mut solvers = Vec::new();
-        for &backend in &arguments.solvers {
-            if !solvers.contains(&backend) {
-                solvers.push(backend);
+        for &solver in &arguments.solvers {
+            if !solvers.contains(&solver) {
+                solvers.push(solver);
             }
         }
         let mut options =
@@ -125,7 +125,7 @@ impl<'a> Bench<'a> {
     }
 
     fn comparison(&self) -> Comparison {
-        let contestant = |&name: &BackendName| (name.as_str().into(), solver(name));
+        let contestant = |&name: &SolverName| (name.as_str().into(), solver(name));
         Comparison::new(self.solvers.iter().map(contestant).collect(), self.options.clone())
     }
 
@@ -192,7 +192,7 @@ impl<'a> Bench<'a> {
     /// Refuses meshes of which the finest does not fit into memory, whatever the solver.
     fn check_memory(&self, name: &str, finest: f64) -> Result<(), Failure> {
         // Of all solvers, this one needs the least.
-        self.memory.check(name, BackendName::Multigrid, finest)
+        self.memory.check(name, SolverName::Multigrid, finest)
     }
 
     /// Runs all solvers on one mesh, but for those that need more memory than there is. After each, all rows are in the file: a long run may be stopped.

@@ -1,9 +1,9 @@
-//! `membranes check`: every residual, all backends, side by side, or of an answer from elsewhere.
+//! `membranes check`: every residual, all solvers, side by side, or of an answer from elsewhere.
 
 use super::answer::{self, Verdict};
 use crate::action::{ContactSolution, Rejected, Residuals, certify};
 use crate::cli::args::CheckArguments;
-use crate::cli::case::{BackendName, SolverSettings};
+use crate::cli::case::{SolverName, SolverSettings};
 use crate::cli::failure::Failure;
 use crate::cli::run::progress::Progress;
 use crate::cli::run::setup::{Setup, options, solver, unused_groups};
@@ -20,10 +20,10 @@ use crate::text::grouped;
 /// The second line above a result that nobody has polished.
 const AS_IT_IS: &str = "as it is";
 
-/// One backend's result.
+/// One solver's result.
 struct Column {
     heading: [String; 2],
-    /// The answer as the backend left it is shown for comparison only.
+    /// The answer as the solver left it is shown for comparison only.
     must_certify: bool,
     result: Result<ContactSolution, Box<Rejected>>,
 }
@@ -35,13 +35,13 @@ pub(crate) fn run(arguments: &CheckArguments, watch: &Watch) -> Result<(), Failu
         setup.case.solver.tolerance = Tolerance::Fixed(tolerance);
     }
     if arguments.answer.is_none() {
-        for backend in backends() {
-            setup.check_memory(backend)?;
+        for name in solvers() {
+            setup.check_memory(name)?;
         }
     }
     let (d, seconds) = setup.discretize(&progress)?;
     let (columns, remedy) = match &arguments.answer {
-        None => (columns_of_backends(&setup, &d, &progress)?, ""),
+        None => (columns_of_solvers(&setup, &d, &progress)?, ""),
         Some(file) => {
             progress.stage("judging the answer");
             let Verdict { result, remedy } = answer::judge(&setup, &d, file, arguments, seconds, watch)?;
@@ -72,20 +72,20 @@ pub(crate) fn run(arguments: &CheckArguments, watch: &Watch) -> Result<(), Failu
 }
 
 /// All of this build; the choice among them is one of them.
-fn backends() -> impl Iterator<Item = BackendName> {
-    BackendName::ALL.into_iter().filter(|backend| backend.is_built() && *backend != BackendName::Auto)
+fn solvers() -> impl Iterator<Item = SolverName> {
+    SolverName::ALL.into_iter().filter(|solver| solver.is_built() && *solver != SolverName::Auto)
 }
 
-fn columns_of_backends(
+fn columns_of_solvers(
     setup: &Setup,
     d: &Discretization,
     progress: &Progress,
 ) -> Result<Vec<Column>, Failure> {
     let mut columns = Vec::new();
-    for backend in backends() {
-        let ways = if backend.is_polished() { [true, false].as_slice() } else { &[true] };
+    for name in solvers() {
+        let ways = if name.is_polished() { [true, false].as_slice() } else { &[true] };
         for &polish in ways {
-            let settings = SolverSettings { backend, polish, ..setup.case.solver.clone() };
+            let settings = SolverSettings { name, polish, ..setup.case.solver.clone() };
             columns.push(column(&setup.name, d, &settings, progress)?);
         }
     }
@@ -93,33 +93,33 @@ fn columns_of_backends(
 }
 
 fn column(
-    name: &str,
+    case: &str,
     d: &Discretization,
     settings: &SolverSettings,
     progress: &Progress,
 ) -> Result<Column, Failure> {
-    let backend = settings.backend;
-    let way = match (backend.is_polished(), settings.polish) {
+    let name = settings.name;
+    let way = match (name.is_polished(), settings.polish) {
         (false, _) => "",
         (true, true) => "polished",
         (true, false) => AS_IT_IS,
     };
-    progress.stage(format!("{} {way}", backend.as_str()));
-    let candidate = solver(settings.backend)
+    progress.stage(format!("{} {way}", name.as_str()));
+    let candidate = solver(name)
         .solve(d, &options(settings))
-        .map_err(|error| Failure::NotCertified(format!("{name}: {error}")))?;
+        .map_err(|error| Failure::NotCertified(format!("{case}: {error}")))?;
     Ok(Column {
-        heading: heading(backend, way),
+        heading: heading(name, way),
         must_certify: settings.polish,
         result: certify(d, candidate, settings.tolerance.or_default()),
     })
 }
 
 /// Two lines that fit into a column: the names of the others are too long to have a way beside them.
-fn heading(backend: BackendName, way: &str) -> [String; 2] {
-    match backend.as_str().split_once('-') {
+fn heading(name: SolverName, way: &str) -> [String; 2] {
+    match name.as_str().split_once('-') {
         Some((first, second)) => [format!("{first}-"), second.into()],
-        None => [backend.as_str().into(), way.into()],
+        None => [name.as_str().into(), way.into()],
     }
 }
 

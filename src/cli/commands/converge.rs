@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::solution::left_out_line;
 use crate::cli::args::ConvergeArguments;
-use crate::cli::case::BackendName;
+use crate::cli::case::SolverName;
 use crate::cli::failure::Failure;
 use crate::cli::run::clock::Clock;
 use crate::cli::run::files::{ERRORS, ERRORS_TABLE, Part, RATES};
@@ -42,11 +42,11 @@ pub(crate) fn run(arguments: &ConvergeArguments, watch: &Watch) -> Result<(), Fa
             "give `case = \"...\"` in place of [membranes] and [domain]; `membranes cases` lists them";
         return Err(Failure::Input(format!("{}: errors need a known solution: {remedy}", setup.name)));
     };
-    if let Some(backend) = arguments.backend {
-        setup.case.solver.backend = backend;
+    if let Some(name) = arguments.backend {
+        setup.case.solver.name = name;
     }
-    let backend = setup.case.solver.backend;
-    setup.check_memory(backend)?;
+    let solver_name = setup.case.solver.name;
+    setup.check_memory(solver_name)?;
     check_refinements(&setup.name, setup.family.mesh().points().len() as f64, arguments.levels - 1)?;
     // Nobody may find a folder of which the run says that nothing was written.
     clock.check(too_early(&arguments.case.path))?;
@@ -63,19 +63,19 @@ pub(crate) fn run(arguments: &ConvergeArguments, watch: &Watch) -> Result<(), Fa
     levels.truncate(arguments.levels);
 
     let (title, settings) = (setup.case.title, &setup.case.solver);
-    let solver = solver(backend);
+    let solver = solver(solver_name);
     let mut study = ConvergenceStudy::new(exact, setup.family, solver, options(settings), settings.tolerance)
         .map_err(|error| failure(&setup.name, &error, &setup.node_tags))?;
     let name = setup.name.clone();
     clock.watch(watch, move || too_late(&name));
-    let limits = Limits {
+    let budget = Budget {
         levels: arguments.levels,
         clock,
         memory: setup.memory,
-        backend,
+        solver: solver_name,
         time_limit: settings.time_limit,
     };
-    let stop = add_levels(&setup.name, &mut study, &mut levels, &limits, &kept, &progress)?;
+    let stop = add_levels(&setup.name, &mut study, &mut levels, &budget, &kept, &progress)?;
     watch.lift();
     // Also where all levels were there before.
     let warnings = levels.last().map_or_else(|| Ok(Vec::new()), |last| study.into_warnings(last));
@@ -97,21 +97,21 @@ pub(crate) fn run(arguments: &ConvergeArguments, watch: &Watch) -> Result<(), Fa
 }
 
 /// What the run may take.
-struct Limits {
+struct Budget {
     levels: usize,
     clock: Clock,
     memory: Memory,
-    backend: BackendName,
+    solver: SolverName,
     /// Seconds of each solve.
     time_limit: Option<TimeLimit>,
 }
 
-impl Limits {
+impl Budget {
     /// Why not to begin the level after `last`, judging from that one.
     fn stop(&self, last: &LevelErrors) -> Option<&'static str> {
         if !self.clock.allows(GROWTH * (last.solve_seconds + last.norm_seconds)) {
             Some(TIME)
-        } else if !self.memory.suffices(self.backend, GROWTH * last.vertices as f64) {
+        } else if !self.memory.suffices(self.solver, GROWTH * last.vertices as f64) {
             Some(MEMORY)
         } else {
             None
@@ -124,28 +124,28 @@ fn add_levels(
     name: &str,
     study: &mut ConvergenceStudy,
     levels: &mut Vec<LevelErrors>,
-    limits: &Limits,
+    budget: &Budget,
     kept: &Levels,
     progress: &Progress,
 ) -> Result<Option<&'static str>, Failure> {
     let known = levels.len();
-    if known == limits.levels {
+    if known == budget.levels {
         return Ok(None);
     }
-    progress.steps(limits.levels);
-    for level in 0..limits.levels {
-        progress.stage(format!("level {} of {}", level + 1, limits.levels));
-        if let Some(why) = level.checked_sub(1).and_then(|last| limits.stop(&levels[last])) {
+    progress.steps(budget.levels);
+    for level in 0..budget.levels {
+        progress.stage(format!("level {} of {}", level + 1, budget.levels));
+        if let Some(why) = level.checked_sub(1).and_then(|last| budget.stop(&levels[last])) {
             return Ok(Some(why));
         }
-        study.set_time_limit(limits.clock.of_solver(limits.time_limit));
+        study.set_time_limit(budget.clock.of_solver(budget.time_limit));
         let solved = if level < known {
             study.skip_level()
         } else {
             study.next_level().map(|errors| levels.push(errors))
         };
         match solved {
-            Err(error) if limits.clock.has_stopped(&error) => return Ok(Some(TIME)),
+            Err(error) if budget.clock.has_stopped(&error) => return Ok(Some(TIME)),
             solved => solved.map_err(|error| failure(name, &error, &[]))?,
         }
         if level >= known {

@@ -38,7 +38,7 @@ pub(crate) fn run(arguments: &SolveArguments, watch: &Watch) -> Result<(), Failu
     let progress = Progress::new(arguments.case.quiet);
     let mut setup = Setup::new(&arguments.case, &progress)?;
     override_settings(&mut setup, arguments, &clock);
-    setup.check_memory(setup.case.solver.backend)?;
+    setup.check_memory(setup.case.solver.name)?;
     let (d, seconds) = setup.discretize(&progress)?;
     // Nobody may find a folder of which the run says that nothing was written.
     clock.check(too_early(&arguments.case.path))?;
@@ -88,11 +88,11 @@ fn solve(
 ) -> Result<Bounded, AccuracyError> {
     let settings = &setup.case.solver;
     let unknowns = grouped(2 * d.interior().len());
-    progress.stage(format!("{} solves for {unknowns} unknowns", settings.backend.as_str()));
+    progress.stage(format!("{} solves for {unknowns} unknowns", settings.name.as_str()));
     let give_up = Arc::new(too_late(setup, d, folder, seconds));
     let of_run = Arc::clone(&give_up);
     clock.watch(watch, move || of_run());
-    let mut solver = watch.over(solver(settings.backend), move || give_up());
+    let mut solver = watch.over(solver(settings.name), move || give_up());
     let domain = setup.case.domain();
     solve_bounded(&setup.case.problem, domain, d, &mut *solver, &options(settings), settings.tolerance)
 }
@@ -135,7 +135,7 @@ fn too_late(
     let settings = &setup.case.solver;
     let statistics = Statistics {
         solve_seconds: settings.time_limit.map_or(0.0, TimeLimit::seconds),
-        ..Statistics::of(settings.backend.as_str(), Status::TimeLimit)
+        ..Statistics::of(settings.name.as_str(), Status::TimeLimit)
     };
     let rejected = Rejected::without_result(statistics);
     let tolerance = settings.tolerance.or_default();
@@ -160,8 +160,8 @@ fn reject(name: &str, folder: &Folder, summary: &Summary, rejected: &Rejected) -
 /// Arguments come before the case file.
 fn override_settings(setup: &mut Setup, arguments: &SolveArguments, clock: &Clock) {
     let settings = &mut setup.case.solver;
-    if let Some(backend) = arguments.backend {
-        settings.backend = backend;
+    if let Some(name) = arguments.backend {
+        settings.name = name;
     }
     if let Some(tolerance) = arguments.tolerance {
         settings.tolerance = tolerance;

@@ -61,14 +61,14 @@ impl Levels<'_> {
 
 /// What the levels of a run depend on beside the case.
 pub(crate) fn settings(setup: &Setup) -> String {
-    let SolverSettings { backend, tolerance, polish, .. } = &setup.case.solver;
+    let SolverSettings { name, tolerance, polish, .. } = &setup.case.solver;
     let tolerance = match tolerance {
         Tolerance::Auto => "auto".into(),
         Tolerance::Fixed(tolerance) => format!("{tolerance:e}"),
     };
     let polish = if *polish { "" } else { ", no polish" };
-    let (backend, refinements) = (backend.as_str(), setup.refinements());
-    format!("{VERSION}, {backend}, tolerance {tolerance}{polish}, first refined {refinements} times")
+    let (solver, refinements) = (name.as_str(), setup.refinements());
+    format!("{VERSION}, {solver}, tolerance {tolerance}{polish}, first refined {refinements} times")
 }
 
 /// Why a study of the case file `name` fails.

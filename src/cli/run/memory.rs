@@ -1,6 +1,6 @@
 //! How much memory there is, and how much a run needs: what would not fit is refused before it is begun.
 
-use crate::cli::case::BackendName;
+use crate::cli::case::SolverName;
 use crate::cli::failure::Failure;
 
 const GIB: f64 = (1u64 << 30) as f64;
@@ -28,8 +28,8 @@ impl Memory {
     }
 
     /// Whether a run on so many vertices has enough.
-    pub(crate) fn suffices(self, backend: BackendName, vertices: f64) -> bool {
-        needed(backend, vertices) <= self.0
+    pub(crate) fn suffices(self, solver: SolverName, vertices: f64) -> bool {
+        needed(solver, vertices) <= self.0
     }
 
     /// Whether there are so many bytes; if not, the GiB that are needed and that there are.
@@ -38,13 +38,13 @@ impl Memory {
     }
 
     /// Refuses a run on so many vertices that has not enough.
-    pub(crate) fn check(self, name: &str, backend: BackendName, vertices: f64) -> Result<(), Failure> {
-        if self.suffices(backend, vertices) {
+    pub(crate) fn check(self, name: &str, solver: SolverName, vertices: f64) -> Result<(), Failure> {
+        if self.suffices(solver, vertices) {
             return Ok(());
         }
-        let [needed, available] = [needed(backend, vertices), self.0].map(|bytes| bytes / GIB);
-        let other = match backend {
-            BackendName::Auto | BackendName::Multigrid => "",
+        let [needed, available] = [needed(solver, vertices), self.0].map(|bytes| bytes / GIB);
+        let other = match solver {
+            SolverName::Auto | SolverName::Multigrid => "",
             _ => " or the solver multigrid",
         };
         Err(Failure::Input(format!(
@@ -54,12 +54,12 @@ impl Memory {
 }
 
 /// Bytes that a run needs at its peak.
-fn needed(backend: BackendName, vertices: f64) -> f64 {
+fn needed(solver: SolverName, vertices: f64) -> f64 {
     let doublings = vertices.max(1.0).log2();
-    let factorisation = match backend {
-        BackendName::Auto | BackendName::Multigrid => 0.0,
-        BackendName::ActiveSet => ACTIVE_SET * doublings,
-        BackendName::Clarabel | BackendName::Osqp => QP_SOLVER * doublings,
+    let factorisation = match solver {
+        SolverName::Auto | SolverName::Multigrid => 0.0,
+        SolverName::ActiveSet => ACTIVE_SET * doublings,
+        SolverName::Clarabel | SolverName::Osqp => QP_SOLVER * doublings,
     };
     BASE + (BYTES_PER_VERTEX + factorisation) * vertices
 }
@@ -119,12 +119,11 @@ mod tests {
 
     #[test]
     fn factorisations_need_more_and_the_more_the_finer_the_mesh() {
-        let per_vertex = |backend, vertices: f64| (needed(backend, vertices) - BASE) / vertices;
-        assert_eq!(per_vertex(BackendName::Multigrid, 1e4), per_vertex(BackendName::Multigrid, 1e6));
-        for [less, more] in [
-            [BackendName::Multigrid, BackendName::ActiveSet],
-            [BackendName::ActiveSet, BackendName::Clarabel],
-        ] {
+        let per_vertex = |solver, vertices: f64| (needed(solver, vertices) - BASE) / vertices;
+        assert_eq!(per_vertex(SolverName::Multigrid, 1e4), per_vertex(SolverName::Multigrid, 1e6));
+        for [less, more] in
+            [[SolverName::Multigrid, SolverName::ActiveSet], [SolverName::ActiveSet, SolverName::Clarabel]]
+        {
             assert!(per_vertex(less, 1e6) < per_vertex(more, 1e6));
             assert!(per_vertex(more, 1e5) < per_vertex(more, 1e6));
         }

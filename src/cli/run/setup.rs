@@ -8,7 +8,7 @@ use super::input::{self, Input};
 use super::memory::Memory;
 use super::progress::Progress;
 use crate::cli::args::CaseArguments;
-use crate::cli::case::{BackendName, CaseFile, CaseId, MeshSource, SolverSettings};
+use crate::cli::case::{CaseFile, CaseId, MeshSource, SolverName, SolverSettings};
 use crate::cli::failure::Failure;
 use crate::discretization::Discretization;
 use crate::formats::gmsh::{PhysicalGroup, parse};
@@ -59,8 +59,8 @@ impl Setup {
     }
 
     /// Refuses a solver that needs more memory on this mesh than there is.
-    pub(crate) fn check_memory(&self, backend: BackendName) -> Result<(), Failure> {
-        self.memory.check(&self.name, backend, self.family.mesh().points().len() as f64)
+    pub(crate) fn check_memory(&self, name: SolverName) -> Result<(), Failure> {
+        self.memory.check(&self.name, name, self.family.mesh().points().len() as f64)
     }
 
     /// Assembles the discrete problem, and says how long it took.
@@ -127,7 +127,7 @@ fn make_mesh(name: &str, case: &CaseFile, further: usize, memory: Memory) -> Res
     // Of all solvers, this one needs the least.
     let check = |vertices: f64| {
         let finest = check_refinements(name, vertices, refinements)?;
-        memory.check(name, BackendName::Multigrid, finest)
+        memory.check(name, SolverName::Multigrid, finest)
     };
     let (mut node_tags, mut groups) = (Vec::new(), Vec::new());
     let mut family = match &case.mesh {
@@ -196,15 +196,15 @@ fn cannot_read(case: &str, mesh: &Path, error: &ReadError) -> Failure {
 }
 
 /// The solver of this name.
-pub(crate) fn solver(name: BackendName) -> Box<dyn ContactSolver> {
+pub(crate) fn solver(name: SolverName) -> Box<dyn ContactSolver> {
     match name {
-        BackendName::ActiveSet => Box::new(ActiveSet),
-        BackendName::Multigrid => Box::new(Multigrid),
-        BackendName::Auto => Box::new(Auto),
+        SolverName::ActiveSet => Box::new(ActiveSet),
+        SolverName::Multigrid => Box::new(Multigrid),
+        SolverName::Auto => Box::new(Auto),
         #[cfg(feature = "clarabel")]
-        BackendName::Clarabel => Box::new(QpSolver::new(crate::qp::Clarabel)),
+        SolverName::Clarabel => Box::new(QpSolver::new(crate::qp::Clarabel)),
         #[cfg(feature = "osqp")]
-        BackendName::Osqp => Box::new(QpSolver::new(crate::qp::Osqp)),
+        SolverName::Osqp => Box::new(QpSolver::new(crate::qp::Osqp)),
         #[allow(unreachable_patterns, reason = "with both features there is no other")]
         _ => unreachable!("the name is refused where it is parsed"),
     }
