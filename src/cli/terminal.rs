@@ -23,8 +23,11 @@ const COLUMNS: usize = 80;
 pub(crate) fn wrapped(text: &str, indent: usize) -> String {
     let mut lines = String::new();
     let mut column = 0;
-    for word in text.split_inclusive(' ') {
-        let letters = word.trim_end().chars().count();
+    let mut words = text.split_inclusive(' ').peekable();
+    while let Some(word) = words.next() {
+        // A number keeps its percent sign.
+        let sign = if words.peek().is_some_and(|next| next.starts_with('%')) { 2 } else { 0 };
+        let letters = word.trim_end().chars().count() + sign;
         if column > indent && column + letters > COLUMNS {
             lines.truncate(lines.trim_end().len());
             lines += "\n";
@@ -94,6 +97,9 @@ mod tests {
         let path = "p".repeat(100);
         assert_eq!(wrapped(&path, 2), path);
         assert_eq!(wrapped(&format!("files: {path} x"), 2), format!("files:\n  {path}\n  x"));
+        let percent = |letters: usize| wrapped(&format!("{} 0.1 %: x", "a".repeat(letters)), 0);
+        assert_eq!(percent(73), format!("{} 0.1 %:\nx", "a".repeat(73)));
+        assert_eq!(percent(76), format!("{}\n0.1 %: x", "a".repeat(76)));
         assert_eq!(note("a"), "  a\n");
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::cli::case::SolverName;
 use crate::cli::failure::Failure;
+use crate::text::grouped;
 
 const GIB: f64 = (1u64 << 30) as f64;
 
@@ -48,7 +49,8 @@ impl Memory {
             _ => " or the solver multigrid",
         };
         Err(Failure::Input(format!(
-            "{name}: about {vertices:.1e} vertices need about {needed:.2} GiB of memory, and {available:.2} are available: take a coarser mesh{other}, or allow more with --memory-limit"
+            "{name}: about {} vertices need about {needed:.2} GiB of memory, and {available:.2} are available: take a coarser mesh{other}, or allow more with --memory-limit",
+            grouped(vertices.round() as usize)
         )))
     }
 }
