@@ -15,7 +15,7 @@ use crate::cli::failure::Failure;
 use crate::discretization::Discretization;
 use crate::output::discard_unfinished;
 use crate::qp::TimeLimit;
-use crate::solver::{Candidate, ContactSolver, SolverError, SolverOptions};
+use crate::solver::{Candidate, ContactSolver, PreparedSolver, SolverError, SolverOptions};
 
 /// A solver looks at the clock between its steps. What goes on longer than this fraction of the limit
 /// is not waited for.
@@ -107,9 +107,27 @@ impl ContactSolver for Watched {
     }
 
     fn solve(&mut self, d: &Discretization, options: &SolverOptions) -> Result<Candidate, SolverError> {
-        let alarm = options.time_limit.and_then(|limit| Alarm::after(limit, Arc::clone(&self.give_up)));
+        self.prepare(d).solve(options)
+    }
+
+    fn prepare<'s>(&'s mut self, d: &'s Discretization) -> Box<dyn PreparedSolver + 's> {
+        let Self { solver, watch, give_up } = self;
+        Box::new(WatchedPrepared { solver: solver.prepare(d), watch, give_up })
+    }
+}
+
+/// Likewise, for one discretization.
+struct WatchedPrepared<'s> {
+    solver: Box<dyn PreparedSolver + 's>,
+    watch: &'s Watch,
+    give_up: &'s GiveUp,
+}
+
+impl PreparedSolver for WatchedPrepared<'_> {
+    fn solve(&mut self, options: &SolverOptions) -> Result<Candidate, SolverError> {
+        let alarm = options.time_limit.and_then(|limit| Alarm::after(limit, Arc::clone(self.give_up)));
         self.watch.tell(Event::Alarm(Span::Solve, alarm));
-        let candidate = self.solver.solve(d, options);
+        let candidate = self.solver.solve(options);
         self.watch.tell(Event::Alarm(Span::Solve, None));
         candidate
     }
@@ -212,9 +230,13 @@ fn clear_progress() {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::atomic::{AtomicUsize, Ordering};
     use std::time::Duration;
 
     use super::*;
+    use crate::mesh::{Pattern, rectangle};
+    use crate::problem::ContactProblem;
+    use crate::solver::ActiveSet;
 
     /// Follows `work`, to which an interrupt may come.
     fn follow_to(
@@ -276,6 +298,52 @@ mod tests {
             false,
         );
         assert_eq!(lifted, Ok(()));
+    }
+
+    /// Counts how often it is prepared; what it has prepared is the active set method.
+    struct Counted(Arc<AtomicUsize>);
+
+    impl ContactSolver for Counted {
+        fn name(&self) -> &str {
+            "counted"
+        }
+
+        fn solve(&mut self, d: &Discretization, options: &SolverOptions) -> Result<Candidate, SolverError> {
+            self.prepare(d).solve(options)
+        }
+
+        fn prepare<'s>(&'s mut self, d: &'s Discretization) -> Box<dyn PreparedSolver + 's> {
+            self.0.fetch_add(1, Ordering::Relaxed);
+            Box::new(Prepared(d))
+        }
+    }
+
+    struct Prepared<'d>(&'d Discretization);
+
+    impl PreparedSolver for Prepared<'_> {
+        fn solve(&mut self, options: &SolverOptions) -> Result<Candidate, SolverError> {
+            ActiveSet.solve(self.0, options)
+        }
+    }
+
+    #[test]
+    fn a_solver_with_somebody_beside_it_is_prepared_once_for_all_solves() {
+        let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [4; 2], Pattern::Right).expect("a mesh");
+        let problem = ContactProblem::builder().load(-15.0, 10.0).build().expect("a problem");
+        let d = Discretization::new(&problem, mesh).expect("a discretization");
+        let count = Arc::new(AtomicUsize::new(0));
+        let watch = Watch { events: mpsc::channel().0 };
+        let mut solver = watch.over(Box::new(Counted(Arc::clone(&count))), late);
+        let mut prepared = solver.prepare(&d);
+        for _ in 0..3 {
+            prepared.solve(&SolverOptions::default()).expect("it runs");
+        }
+        assert_eq!(count.load(Ordering::Relaxed), 1);
+        drop(prepared);
+        // Without being prepared, it is so in every solve.
+        solver.solve(&d, &SolverOptions::default()).expect("it runs");
+        solver.solve(&d, &SolverOptions::default()).expect("it runs");
+        assert_eq!(count.load(Ordering::Relaxed), 3);
     }
 
     #[test]
