@@ -10,11 +10,12 @@ use crate::discretization::Discretization;
 use crate::qp::Status;
 use crate::text::grouped;
 
-/// Up to as many unknowns of each membrane the active set method takes no longer than multigrid, and is exact to rounding.
+/// Up to as many unknowns of each membrane the active set method takes about as long as multigrid, and is exact to rounding
+/// (`docs/performance.md` has the figures).
 const SMALL: usize = 2000;
 
 /// Without a hierarchy of meshes it is preferred a little longer: algebraic multigrid needs more cycles.
-const SMALL_WITHOUT_HIERARCHY: usize = 10_000;
+const SMALL_WITHOUT_HIERARCHY: usize = 5_000;
 
 /// The active set method on small meshes, multigrid on others, and the active set method again where that does not converge,
 /// on very stretched triangles; which and why is in [`Statistics::choice`](super::Statistics::choice).
