@@ -1,8 +1,7 @@
 //! Sample meshes for the tests of all layers.
 
 use super::{Mesh, Parents, Pattern, VertexKind, rectangle};
-use crate::numeric::Random;
-use crate::numeric::largest;
+use crate::numeric::{Random, largest};
 
 /// The unit square in `cells x cells` cells of two right triangles.
 pub(crate) fn square(cells: usize) -> Mesh {

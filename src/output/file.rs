@@ -87,7 +87,7 @@ impl FileSet {
 
     /// As [`publish`](Self::publish), with the path that is in the way beside the error.
     fn place(self) -> Result<(), (PathBuf, io::Error)> {
-        let remove = |path: &Path| remove(path).map_err(|error| (path.into(), error));
+        let remove = |path: &Path| remove(path).map_err(|error| (path.to_path_buf(), error));
         if let [_, .., (_, seal)] = self.written.as_slice() {
             remove(seal)?;
         }
