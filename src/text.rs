@@ -3,5 +3,5 @@
 mod names;
 mod number;
 
-pub(crate) use names::{excerpt, meant, nearest};
+pub(crate) use names::{excerpt, meant, nearest, path_excerpt};
 pub(crate) use number::Number;

@@ -1,10 +1,12 @@
 //! Files that are whole or not there.
 
-use std::fs::{File, Permissions};
+use std::fs::Permissions;
 use std::io::{self, BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
 
 use tempfile::{Builder, NamedTempFile};
+
+use crate::formats::open_regular;
 
 /// Names of files that are being written.
 const PREFIX: &str = ".membranes-";
@@ -27,7 +29,7 @@ pub fn write_atomically(
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut file = FileSet::new(folder);
     file.write(path.file_name().unwrap_or_default().as_ref(), write)?;
-    file.publish()
+    file.place().map_err(|(_, error)| error)
 }
 
 /// Files that belong together: they appear when all of them are whole.
@@ -75,16 +77,26 @@ impl FileSet {
     /// Gives the files their names.
     ///
     /// # Errors
-    /// When the folder does not allow it.
+    /// When the folder does not allow it, or another folder lies in the place of a file; the file is named.
     pub fn publish(self) -> io::Result<()> {
+        self.place().map_err(|(path, error)| {
+            let name = path.file_name().unwrap_or_default().display();
+            io::Error::new(error.kind(), format!("{name}: {error}"))
+        })
+    }
+
+    /// As [`publish`](Self::publish), with the path that is in the way beside the error.
+    fn place(self) -> Result<(), (PathBuf, io::Error)> {
+        let remove = |path: &Path| remove(path).map_err(|error| (path.to_path_buf(), error));
         if let [_, .., (_, seal)] = self.written.as_slice() {
             remove(seal)?;
         }
         let is_written = |path: &PathBuf| self.written.iter().any(|(_, written)| written == path);
         self.replaced.iter().filter(|path| !is_written(path)).try_for_each(|path| remove(path))?;
-        self.written
-            .into_iter()
-            .try_for_each(|(file, path)| file.persist(path).map(|_| ()).map_err(|error| error.error))
+        self.written.into_iter().try_for_each(|(file, path)| match file.persist(&path) {
+            Ok(_) => Ok(()),
+            Err(error) => Err((path, error.error)),
+        })
     }
 }
 
@@ -107,8 +119,8 @@ pub fn prepare_folder(folder: &Path) -> io::Result<()> {
     std::fs::create_dir_all(folder)?;
     drop(temporary_file(folder)?);
     for part in parts(folder, PREFIX)? {
-        // A run that is alive holds the lock.
-        if File::open(&part).is_ok_and(|file| file.try_lock().is_ok()) {
+        // A run that is alive holds the lock. What is no file is none of ours.
+        if open_regular(&part).is_ok_and(|file| file.try_lock().is_ok()) {
             remove(&part)?;
         }
     }

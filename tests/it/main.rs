@@ -13,6 +13,7 @@ mod custom_backend;
 mod exact;
 mod folders;
 mod hostile_numbers;
+mod hostile_records;
 mod invariance;
 mod layers;
 mod manifest;

@@ -1,13 +1,13 @@
 //! What makes two case files the same case.
 
 use std::fmt::Write as _;
-use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
 use toml::{Table, Value};
 
 use super::mesh::MeshSource;
+use crate::formats::open_regular;
 
 /// A case, by which its results are known.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -99,10 +99,7 @@ impl Fnv {
     }
 
     fn add_file(&mut self, path: &Path) -> io::Result<()> {
-        if !path.metadata()?.is_file() {
-            return Err(io::ErrorKind::InvalidInput.into());
-        }
-        let mut file = File::open(path)?;
+        let mut file = open_regular(path)?;
         let mut buffer = vec![0; 1 << 16];
         loop {
             match file.read(&mut buffer)? {

@@ -12,10 +12,15 @@ use super::files::Part;
 use super::watch::Watch;
 use crate::cli::case::CaseId;
 use crate::cli::failure::Failure;
+use crate::formats::read_regular;
 use crate::output::{FileSet, WriteSeek, prepare_folder, remove, write_atomically};
+use crate::text::path_excerpt;
 
 /// What a folder knows of its case.
 const RECORD: &str = "membranes.json";
+
+/// The longest record, bytes: one of a path of 4096, each of them escaped, has less than half of it.
+const LONGEST_RECORD: u64 = 1 << 16;
 
 const REMEDY: &str = "name another folder with --out, or replace them with --overwrite";
 
@@ -85,9 +90,9 @@ impl Folder {
         &self.path
     }
 
-    /// Whose folder it is. A record that cannot be read is none.
+    /// Whose folder it is. A record that cannot be read is none, nor is what has no end.
     fn record(&self) -> Option<Record> {
-        let text = std::fs::read(self.path.join(RECORD)).ok()?;
+        let text = read_regular(&self.path.join(RECORD), LONGEST_RECORD).ok()?;
         serde_json::from_slice(&text).ok()
     }
 
@@ -104,24 +109,32 @@ impl Folder {
             return Some(Conflict { parts, why: format!("holds {first}, and no record of its case") });
         };
         if known.fingerprint != claim.case.fingerprint {
+            let case = path_excerpt(&known.case);
             let why = if known.case == claim.case.name {
-                format!("holds results of {} as it was before it was changed", known.case)
+                format!("holds results of {case} as it was before it was changed")
             } else {
-                format!("holds results of another case, {}", known.case)
+                format!("holds results of another case, {case}")
             };
             return Some(Conflict { parts, why });
         }
         let part = claim.part;
         let before = known.settings.get(part.name())?;
         let there = self.holds(part).filter(|_| *before != claim.settings)?;
-        let why = format!("holds {there} of other settings ({before}; now {})", claim.settings);
+        let [before, now] = [before, &claim.settings].map(|settings| path_excerpt(settings));
+        let why = format!("holds {there} of other settings ({before}; now {now})");
         Some(Conflict { parts: vec![part], why })
     }
 
     /// Removes a file, if it is there.
     pub(crate) fn remove(&self, name: &str) -> Result<(), Failure> {
         let path = self.path.join(name);
-        remove(&path).map_err(|error| Failure::Input(format!("{}: cannot remove: {error}", path.display())))
+        let cannot_remove = |error| {
+            format!(
+                "{}: cannot remove: {error}; remove it, or name another folder with --out",
+                path.display()
+            )
+        };
+        remove(&path).map_err(|error| Failure::Input(cannot_remove(error)))
     }
 
     /// Writes a file, whole or not at all.

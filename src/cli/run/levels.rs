@@ -8,11 +8,14 @@ use super::folder::Folder;
 use super::setup::Setup;
 use crate::cli::case::SolverSettings;
 use crate::cli::failure::Failure;
-use crate::formats::open_regular;
+use crate::formats::read_regular;
 use crate::mesh::gmsh_nodes;
 use crate::study::{StudyError, Tolerance};
 
 const VERSION: &str = concat!("membranes ", env!("CARGO_PKG_VERSION"));
+
+/// The longest table of levels, bytes: a study has a thousand at most, of less than a thousand bytes each.
+const LONGEST_TABLE: u64 = 1 << 24;
 
 /// What an interrupted run has to say of its folder.
 pub(crate) const KEPT: &str = "complete levels are kept, and the same command goes on from there";
@@ -43,8 +46,9 @@ pub(crate) struct Levels<'a> {
 impl Levels<'_> {
     /// The rows that an earlier run has left. A table that cannot be read is made anew.
     pub(crate) fn so_far<T: DeserializeOwned>(&self) -> Vec<T> {
-        let Ok(file) = open_regular(&self.folder.path().join(self.table)) else { return Vec::new() };
-        let rows: Result<Vec<T>, _> = csv::Reader::from_reader(file).into_deserialize().collect();
+        let path = self.folder.path().join(self.table);
+        let Ok(bytes) = read_regular(&path, LONGEST_TABLE) else { return Vec::new() };
+        let rows: Result<Vec<T>, _> = csv::Reader::from_reader(bytes.as_slice()).into_deserialize().collect();
         rows.unwrap_or_default()
     }
 
