@@ -1,4 +1,10 @@
-//! Numbers of which none may be lost.
+//! Numbers of which none may be lost, and random ones for tests.
+
+#[cfg(test)]
+mod random;
+
+#[cfg(test)]
+pub(crate) use random::Random;
 
 /// The number itself, or infinity for a NaN: as a defect, the worst.
 pub(crate) fn or_infinite(x: f64) -> f64 {

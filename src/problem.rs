@@ -10,6 +10,8 @@ mod cases;
 mod domain;
 mod expression;
 mod function;
+#[cfg(test)]
+pub(crate) mod samples;
 
 pub use cases::{Case, CaseError, ExactSolution, Parameter, Range};
 pub use domain::Domain;

@@ -4,6 +4,7 @@ use super::{Action, Reason, Residual, Residuals, certify};
 use crate::discretization::Discretization;
 use crate::mesh::samples::irregular;
 use crate::mesh::{Mesh, Pattern, VertexKind, rectangle};
+use crate::numeric::largest;
 use crate::problem::{ContactProblem, Function};
 use crate::qp::{Clarabel, QpBackend, QpOptions, contact_qp};
 use crate::solver::{ActiveSet, Candidate, ContactSolver, QpSolver, SolverOptions};
@@ -152,7 +153,7 @@ fn the_action_depends_on_the_gap_alone() {
     }
     let after = Action::recover(&d, &[u1, u2]);
     let change = |of: &dyn Fn(&Action) -> f64| {
-        before.iter().zip(&after).map(|(before, after)| (of(before) - of(after)).abs()).fold(0.0, f64::max)
+        largest(before.iter().zip(&after).map(|(before, after)| (of(before) - of(after)).abs()))
     };
     assert!(change(&|action| action.lambda) < TOLERANCE, "both membranes moved alike");
     for i in 0..2 {

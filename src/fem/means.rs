@@ -21,12 +21,13 @@ mod tests {
     use super::*;
     use crate::fem::load;
     use crate::mesh::samples::irregular;
+    use crate::numeric::largest;
 
     /// Rounding of means and sums of loads of order one, and of abscissae of 16 digits.
     const ROUNDING: f64 = 1e-14;
 
     fn largest_difference(found: &[f64], expected: impl Fn(usize) -> f64) -> f64 {
-        (0..found.len()).map(|k| (found[k] - expected(k)).abs()).fold(0.0, f64::max)
+        largest((0..found.len()).map(|k| (found[k] - expected(k)).abs()))
     }
 
     #[test]

@@ -39,7 +39,20 @@ pub fn exact(case: Case, parameters: &[(&str, f64)]) -> ExactSolution {
     case.solution(&parameters).expect("parameters in range")
 }
 
-/// The largest distance of two functions over the same points.
+/// The largest value, at least zero; infinite as soon as one is NaN, which `f64::max` would lose.
+pub fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
+    values.into_iter().map(|x| if x.is_nan() { f64::INFINITY } else { x }).fold(0.0, f64::max)
+}
+
+/// The largest distance of two functions over the same points; infinite where one has no value.
 pub fn distance(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    largest(a.iter().zip(b).map(|(a, b)| (a - b).abs()))
+}
+
+#[test]
+fn what_has_no_value_is_at_no_distance() {
+    assert_eq!(distance(&[1.0, 2.0], &[1.5, 2.0]), 0.5);
+    for [a, b] in [[f64::NAN, 1.0], [1.0, f64::NAN]] {
+        assert_eq!(distance(&[a, b], &[1.0, 1.0]), f64::INFINITY);
+    }
 }

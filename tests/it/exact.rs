@@ -6,7 +6,7 @@ use membrane_contact::mesh::{Mesh, Pattern, rectangle};
 use membrane_contact::problem::{Case, ContactProblem, ExactSolution};
 use membrane_contact::solver::ContactSolver;
 
-use crate::common::{TOLERANCE, distance, exact, solve, solvers};
+use crate::common::{TOLERANCE, distance, exact, largest, solve, solvers};
 
 /// Nodal error of a nodally exact case after the polish.
 const NODALLY_EXACT: f64 = 1e-10;
@@ -169,7 +169,7 @@ fn the_extended_force_of_full_contact_is_the_integral_of_the_action() {
     let exact = exact(Case::FullContact, &[]);
     let errors = [16, 64].map(|cells| {
         let of = |solution: &ContactSolution| (solution.total_force_extended() - 12.5).abs();
-        solutions(&exact, &unit_square(cells)).iter().map(of).fold(0.0, f64::max)
+        largest(solutions(&exact, &unit_square(cells)).iter().map(of))
     });
     assert!(errors[0] < 0.05 && errors[1] < errors[0] / 8.0, "of second order: {errors:?}");
 }
@@ -227,7 +227,7 @@ fn curved_free_boundaries_are_found_to_the_order_of_the_mesh_size() {
                 .iter()
                 .map(|solution| nodal_error(&mesh, &exact, solution.displacement()))
                 .collect();
-            errors.into_iter().fold(0.0, f64::max)
+            largest(errors)
         });
         // Of second order, but for where the curve passes among the vertices: better than 4^(-3/2) at a quarter of h.
         assert!(errors[1] < 0.125 * errors[0], "{case}: {errors:?}");

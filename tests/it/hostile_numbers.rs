@@ -11,7 +11,7 @@ use membrane_contact::discretization::Discretization;
 use membrane_contact::solver::{ActiveSet, ContactSolver, SolverOptions};
 use membrane_contact::study::{Bounded, Tolerance, solve_bounded};
 
-use crate::common::{TOLERANCE, distance, solvers};
+use crate::common::{TOLERANCE, distance, largest, solvers};
 use problems::{Hostile, refused, solvable};
 
 /// How far two solvers may be from each other, in units of the data: each is certified at [`TOLERANCE`], and on slivers what
@@ -59,15 +59,10 @@ fn every_solver_is_certified_and_all_find_the_same() {
 fn difference(d: &Discretization, first: &Bounded, second: &Bounded) -> f64 {
     let scales = d.scales();
     let [first, second] = [&first.solution, &second.solution];
-    let displacements = (0..2).map(|i| {
-        distance_or_infinite(&first.displacement()[i], &second.displacement()[i]) / scales.displacement
-    });
-    let actions = distance_or_infinite(first.lambda(), second.lambda()) / scales.force_density;
-    displacements.fold(actions, f64::max)
-}
-
-fn distance_or_infinite(a: &[f64], b: &[f64]) -> f64 {
-    if a.iter().chain(b).all(|value| value.is_finite()) { distance(a, b) } else { f64::INFINITY }
+    let displacements =
+        (0..2).map(|i| distance(&first.displacement()[i], &second.displacement()[i]) / scales.displacement);
+    let actions = distance(first.lambda(), second.lambda()) / scales.force_density;
+    largest(displacements.chain([actions]))
 }
 
 /// What is wrong with what is made of the solutions.

@@ -22,6 +22,7 @@ mod pictures;
 mod plate;
 mod program;
 mod quadrature;
+mod random;
 mod readme;
 mod resume;
 mod same_bytes;

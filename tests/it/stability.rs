@@ -6,7 +6,8 @@ use membrane_contact::mesh::{Pattern, rectangle};
 use membrane_contact::problem::{ContactProblem, Function};
 use membrane_contact::solver::{ActiveSet, ContactSolver, SolverOptions};
 
-use crate::common::TOLERANCE;
+use crate::common::{TOLERANCE, largest};
+use crate::random::Random;
 
 /// Modes `sin(k pi x) sin(l pi y)` of a load, `k, l = 1 .. MODES`.
 const MODES: usize = 4;
@@ -17,17 +18,11 @@ struct Data {
     height: f64,
 }
 
-/// Uniform numbers in `(-1, 1)`, the same in every run (Knuth's linear congruential generator).
-fn random(state: &mut u64) -> f64 {
-    *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-    (*state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-}
-
 impl Data {
-    fn draw(state: &mut u64) -> Self {
-        let mut coefficients = || (0..MODES * MODES).map(|_| random(state)).collect();
+    fn draw(random: &mut Random) -> Self {
+        let mut coefficients = || (0..MODES * MODES).map(|_| random.between(-1.0, 1.0)).collect();
         let load = [coefficients(), coefficients()];
-        Self { load, height: 0.05 * random(state).abs() }
+        Self { load, height: random.between(0.0, 0.05) }
     }
 
     fn problem(&self) -> ContactProblem {
@@ -66,15 +61,15 @@ fn solution_norm(d: &Discretization, solution: &ContactSolution) -> f64 {
 /// The largest ratio of both sides of (2.17) over data drawn at random, on a mesh of `cells x cells`.
 fn constant(cells: usize, scale: impl Fn(usize) -> f64) -> f64 {
     let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [cells, cells], Pattern::Right).unwrap();
-    let mut state = 2009;
+    let mut random = Random::new(2009);
     let ratios = (0..20).map(|_| {
-        let data = Data::draw(&mut state);
+        let data = Data::draw(&mut random);
         let d = Discretization::new(&data.problem(), mesh.clone()).unwrap();
         let candidate = ActiveSet.solve(&d, &SolverOptions::default()).expect("it runs");
         let solution = certify(&d, candidate, TOLERANCE).expect("certified");
         scale(cells) * solution_norm(&d, &solution) / data.norm()
     });
-    ratios.fold(0.0, f64::max)
+    largest(ratios)
 }
 
 /// Whether the constants keep below the coarsest one, but for what its coarseness explains.

@@ -12,6 +12,7 @@ use serde_json::Value;
 use tempfile::{TempDir, tempdir};
 
 use super::program::{Run, command, files, run};
+use super::random::Random;
 use super::timeless::timeless;
 
 /// A case with a known solution, whose corner needs a fine mesh.
@@ -90,18 +91,14 @@ fn timeless_results(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     results(folder).into_iter().map(without_times).collect()
 }
 
-/// Numbers between 0 and 1, other ones in each run: the seed is printed, and taken from `MEMBRANES_SEED` if that is set.
-fn random() -> impl FnMut() -> f64 {
+/// Other numbers in each run: the seed is printed, and taken from `MEMBRANES_SEED` if that is set.
+fn random() -> Random {
     let clock =
         || SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).map_or(1, |time| time.as_nanos() as u64);
     let given = std::env::var("MEMBRANES_SEED").ok().and_then(|seed| seed.parse().ok());
-    let mut state: u64 = given.unwrap_or_else(clock);
-    eprintln!("MEMBRANES_SEED={state}");
-    move || {
-        // Knuth's MMIX.
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1u64 << 53) as f64
-    }
+    let seed: u64 = given.unwrap_or_else(clock);
+    eprintln!("MEMBRANES_SEED={seed}");
+    Random::new(seed)
 }
 
 /// Kills runs at random moments, so many of each command, and lets one in `KILLS + 1` end.
@@ -116,7 +113,7 @@ fn kill_at_random(rounds: usize) {
             let folder = folder_with(CASE);
             for _ in 0..KILLS {
                 let mut child = start(folder.path(), arguments);
-                sleep(Duration::from_millis((random() * milliseconds as f64) as u64));
+                sleep(Duration::from_millis(random.between(0.0, milliseconds as f64) as u64));
                 child.kill().expect("it is there, or has ended");
                 end(child);
                 assert_eq!(torn(folder.path()), [""; 0], "{arguments}");

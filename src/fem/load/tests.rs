@@ -3,6 +3,7 @@ use std::collections::BTreeMap;
 use super::*;
 use crate::fem::moments::BLOCK;
 use crate::mesh::samples::{irregular, renumbered, square};
+use crate::numeric::largest;
 use crate::problem::Expression;
 
 /// Rounding of the sums around a vertex, and of abscissae of 16 digits; loads are of order one.
@@ -49,7 +50,7 @@ fn exact_load(mesh: &Mesh, p: i32, q: i32) -> Vec<f64> {
 }
 
 fn largest_difference(found: &[f64], expected: &[f64]) -> f64 {
-    found.iter().zip(expected).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max)
+    largest(found.iter().zip(expected).map(|(x, y)| (x - y).abs()))
 }
 
 fn bits(values: &[f64]) -> Vec<u64> {

@@ -5,6 +5,7 @@ use crate::discretization::Discretization;
 use crate::fem::{DEGREE_4, element_means};
 use crate::flux::{Flux, Reconstruction, Reconstructor};
 use crate::mesh::{Mesh, SubTriangulation, VertexKind};
+use crate::numeric::largest;
 use crate::problem::ContactProblem;
 
 /// Rounding of a divergence of the size of the loads, 20: fluxes over areas of `1e-5` on the graded mesh.
@@ -57,7 +58,7 @@ fn largest_residual(
         area[group] += sub.mesh().triangle_area(t);
     }
     let densities = residual.iter().zip(&area).filter(|(_, area)| **area > 0.0);
-    densities.map(|(residual, area)| (residual / area).abs()).fold(0.0, f64::max)
+    largest(densities.map(|(residual, area)| (residual / area).abs()))
 }
 
 #[test]

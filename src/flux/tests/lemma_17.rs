@@ -7,8 +7,9 @@ use crate::action::ContactSolution;
 use crate::discretization::Discretization;
 use crate::fem::{DEGREE_4, element_means};
 use crate::flux::{Flux, Reconstruction, Reconstructor};
-use crate::mesh::samples::{Random, irregular};
+use crate::mesh::samples::irregular;
 use crate::mesh::{Mesh, SubTriangulation, disk};
+use crate::numeric::{Random, largest};
 use crate::problem::{Case, ContactProblem, Function};
 
 /// Rounding of integrals over cells of loads of the size 20, and of abscissae of 16 digits.
@@ -59,7 +60,7 @@ fn both_sides(
 
 /// The largest difference over interior vertices, and the largest right side.
 fn compare(d: &Discretization, [left, right]: &[Vec<f64>; 2]) -> [f64; 2] {
-    let over = |value: &dyn Fn(usize) -> f64| d.interior().iter().map(|&a| value(a)).fold(0.0, f64::max);
+    let over = |value: &dyn Fn(usize) -> f64| largest(d.interior().iter().map(|&a| value(a)));
     [over(&|a| (left[a] - right[a]).abs()), over(&|a| right[a].abs())]
 }
 

@@ -84,7 +84,7 @@ fn cells(bounds: &Bounds, level: i32) -> impl Iterator<Item = [i64; 2]> + use<> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::samples::Random;
+    use crate::numeric::Random;
 
     /// Of boxes of very different sizes, exactly the pairs that meet are found, each by one of the two at least.
     #[test]

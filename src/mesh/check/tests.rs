@@ -2,7 +2,8 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::geometry::twice_signed_area;
-use crate::mesh::samples::{Random, irregular, renumbered, square, square_without};
+use crate::mesh::samples::{irregular, renumbered, square, square_without};
+use crate::numeric::Random;
 
 mod hanging;
 mod overlap;

@@ -74,7 +74,7 @@ fn is_right_of(points: &[[f64; 2]], edge: &BoundaryEdge, point: [f64; 2]) -> boo
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::samples::Random;
+    use crate::numeric::Random;
 
     /// The edge from each point to the next one of its square.
     fn squares(corners: &[[f64; 2]]) -> Vec<BoundaryEdge> {

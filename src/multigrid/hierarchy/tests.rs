@@ -2,6 +2,7 @@ use super::*;
 use crate::fem::stiffness;
 use crate::mesh::samples::irregular;
 use crate::mesh::{Mesh, MeshSize, Pattern, generate, rectangle};
+use crate::numeric::largest;
 use crate::problem::{ContactProblem, Domain};
 
 /// Rounding of matrix entries and weights of size one.
@@ -162,7 +163,7 @@ fn products_by_stencils_are_those_of_the_rows() {
             let level = &hierarchy.levels()[hierarchy.finest() - below];
             assert_eq!(shared(level) > 0.5, expected, "{below} below: {}", shared(level));
             let [by_runs, by_rows] = products(level, &scattered(level.pattern.rows()));
-            let defect = by_runs.iter().zip(&by_rows).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            let defect = largest(by_runs.iter().zip(&by_rows).map(|(a, b)| (a - b).abs()));
             assert!(if below == 0 { defect == 0.0 } else { defect < ROUNDING }, "{below} below: {defect}");
         }
     }

@@ -1,6 +1,7 @@
 use super::*;
 use crate::mesh::samples::{irregular, square};
 use crate::mesh::{Mesh, Pattern, rectangle};
+use crate::numeric::largest;
 use crate::problem::{ContactProblem, Function};
 
 /// Rounding of a few operations on numbers of order ten.
@@ -86,7 +87,7 @@ fn planes_are_at_rest() {
     }
     let gradient = |q: &[f64]| {
         let sums = qp.p_times(&x).into_iter().zip(q).map(|(px, q)| (px + q).abs());
-        sums.fold(0.0, f64::max)
+        largest(sums)
     };
     assert!(gradient(qp.q()) < ROUNDING);
     let flipped: Vec<f64> = qp.q().iter().map(|q| -q).collect();

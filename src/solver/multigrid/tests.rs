@@ -4,11 +4,13 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::action::certify;
-use crate::mesh::samples::{Random, irregular};
+use crate::mesh::samples::irregular;
 use crate::mesh::{Mesh, MeshSize, Pattern, disk, generate, l_shape, rectangle};
 use crate::multigrid::hierarchy::{Hierarchy, LONGEST, Values};
 use crate::multigrid::sweep::Bounded;
 use crate::multigrid::truncation::Truncation;
+use crate::numeric::{Random, largest};
+use crate::problem::samples::drawn;
 use crate::problem::{Case, ContactProblem, Domain, Function};
 use crate::solver::ActiveSet;
 
@@ -76,7 +78,7 @@ fn it_finds_what_the_active_set_method_finds() {
             assert_eq!(found.contact(), exact.contact());
             let scale = d.scales().force_density;
             let pairs = found.lambda().iter().zip(exact.lambda());
-            assert!(pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) < 10.0 * TOLERANCE * scale);
+            assert!(largest(pairs.map(|(a, b)| (a - b).abs())) < 10.0 * TOLERANCE * scale);
         }
     }
 }
@@ -195,6 +197,22 @@ fn on_stretched_triangles_the_levels_are_algebraic() {
     assert_eq!(first.displacement, candidate.displacement);
     assert_eq!(again.displacement, candidate.displacement);
     assert!(certify(&d, candidate, TOLERANCE).is_ok());
+}
+
+/// What stalled counts where it was spent, and is named once, also when it has stalled before.
+#[test]
+fn the_seconds_of_what_stalled_are_those_of_setup_and_of_solving() {
+    let took = |setup_seconds: f64, solve_seconds: f64, iterations: usize| Statistics {
+        setup_seconds,
+        solve_seconds,
+        iterations,
+        ..Statistics::of(NAME)
+    };
+    let first = took(2.0, 20.0, 7).after("another".into(), took(1.0, 10.0, 5));
+    let all = took(4.0, 40.0, 9).after(NAME.into(), first);
+    assert_eq!((all.setup_seconds, all.solve_seconds, all.iterations), (7.0, 70.0, 9));
+    let stalled: Vec<_> = all.stalled.iter().map(|tried| (tried.method.as_str(), tried.iterations)).collect();
+    assert_eq!(stalled, [("another", 5), (NAME, 7)]);
 }
 
 /// Levels that are kept are those that would be made anew, whatever was asked for before.
@@ -358,14 +376,9 @@ proptest! {
     fn random_data_are_solved_and_the_energy_falls(
         cells in 3..14usize,
         refinements in 0..3usize,
-        loads in prop::array::uniform4(-30.0..30.0f64),
-        height in 0.0..0.5f64,
-        stiff in 0.01..100.0f64,
+        problem in drawn(|height| Function::Constant(10.0 * height)),
     ) {
         let mesh = (0..refinements).fold(irregular(cells), |mesh, _| mesh.refine().unwrap().mesh);
-        let f1 = Function::from_fn(move |x: f64, y: f64| loads[0] + loads[1] * (7.0 * x * y).sin());
-        let f2 = Function::from_fn(move |x: f64, y: f64| loads[2] + loads[3] * (5.0 * x - 3.0 * y).cos());
-        let problem = ContactProblem::builder().tension(1.0, stiff).load(f1, f2).height(height).build().unwrap();
         let d = Discretization::new(&problem, mesh.clone()).unwrap();
         let found = solve_by(&mut Multigrid, &d, &options());
         prop_assert!(falls(&found.statistics.energies), "{:?}", found.statistics.energies);

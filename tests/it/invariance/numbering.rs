@@ -3,8 +3,9 @@
 use membrane_contact::discretization::Discretization;
 use membrane_contact::mesh::Mesh;
 
-use super::random::{Draw, Random};
+use super::random::Draw;
 use super::{EXACT, Fields, holds, is_seen, solve};
+use crate::random::Random;
 
 /// Solves on a mesh whose vertices are numbered by a permutation, its triangles and their corners in another order. `read`
 /// says under which number a vertex is looked up afterwards.
@@ -13,7 +14,7 @@ fn survives(draw: &Draw, read: impl Fn(&[usize], usize) -> usize) -> Result<(), 
     let d = draw.discretize(&mesh)?;
     let expected = Fields::from(&solve(&d)?);
 
-    let mut random = Random(draw.tension[0].to_bits());
+    let mut random = Random::new(draw.tension[0].to_bits());
     let number = random.permutation(mesh.points().len());
     let renumbered = renumbered(&mesh, &number, &mut random)?;
     let d_renumbered =

@@ -5,6 +5,8 @@ use membrane_contact::mesh::{Mesh, Pattern, VertexKind, disk, l_shape, polygon, 
 use membrane_contact::problem::{ContactProblem, Expression, Function};
 use proptest::prelude::*;
 
+use crate::random::Random;
+
 /// A problem and its mesh, as few numbers.
 #[derive(Debug, Clone)]
 pub struct Draw {
@@ -169,36 +171,12 @@ fn ring(centre: [f64; 2], radii: &[f64]) -> Vec<[f64; 2]> {
 
 /// The mesh with its inner vertices moved by up to `reach`.
 fn shaken(mesh: &Mesh, reach: [f64; 2], seed: u64) -> Result<Mesh, String> {
-    let mut random = Random(seed | 1);
+    let mut random = Random::new(seed);
     let moved = mesh.points().iter().zip(mesh.kind()).map(|(&[x, y], kind)| match kind {
-        VertexKind::Interior => [x + reach[0] * random.between_ones(), y + reach[1] * random.between_ones()],
+        VertexKind::Interior => {
+            [x + reach[0] * random.between(-1.0, 1.0), y + reach[1] * random.between(-1.0, 1.0)]
+        }
         _ => [x, y],
     });
     Mesh::new(moved.collect(), mesh.triangles().to_vec()).map_err(|error| error.to_string())
-}
-
-/// Pseudorandom numbers (xorshift64*, Vigna 2016).
-pub struct Random(pub u64);
-
-impl Random {
-    pub fn next(&mut self) -> u64 {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        self.0.wrapping_mul(0x2545_f491_4f6c_dd1d)
-    }
-
-    /// A number between -1 and 1.
-    fn between_ones(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    }
-
-    /// The numbers `0..n` in any order.
-    pub fn permutation(&mut self, n: usize) -> Vec<usize> {
-        let mut order: Vec<usize> = (0..n).collect();
-        for k in (1..n).rev() {
-            order.swap(k, (self.next() % (k as u64 + 1)) as usize);
-        }
-        order
-    }
 }

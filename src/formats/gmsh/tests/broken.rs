@@ -2,6 +2,7 @@
 
 use super::super::parse;
 use super::{VALID, read};
+use crate::numeric::Random;
 
 /// Where the last triangle is complete: the front of the line `$EndElements`.
 fn end_of_elements(bytes: &[u8]) -> usize {
@@ -23,30 +24,20 @@ fn a_file_cut_anywhere_is_refused_or_read_in_full() {
     }
 }
 
-/// Knuth's linear congruential generator (MMIX); the high bits are good.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, bound: usize) -> usize {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        ((u128::from(self.0) * bound as u128) >> 64) as usize
-    }
-
-    /// Changes some bytes: to any byte, to one that means something in a file, or by moving a passage.
-    fn mutate(&mut self, bytes: &mut Vec<u8>) {
-        const TELLING: &[u8] = b"0123456789-.eE \n\r\t$nafi\0\x01\x7f\x80\xff";
-        for _ in 0..=self.below(4) {
-            let at = self.below(bytes.len());
-            match self.below(5) {
-                0 => bytes[at] = self.below(256) as u8,
-                1 => bytes[at] = TELLING[self.below(TELLING.len())],
-                2 => bytes.insert(at, TELLING[self.below(TELLING.len())]),
-                3 => drop(bytes.drain(at..(at + 1 + self.below(12)).min(bytes.len() - 1).max(at))),
-                _ => {
-                    let length = self.below(40).min(bytes.len() - at);
-                    let to = self.below(bytes.len() - length + 1);
-                    bytes.copy_within(at..at + length, to);
-                }
+/// Changes some bytes: to any byte, to one that means something in a file, or by moving a passage.
+fn mutate(random: &mut Random, bytes: &mut Vec<u8>) {
+    const TELLING: &[u8] = b"0123456789-.eE \n\r\t$nafi\0\x01\x7f\x80\xff";
+    for _ in 0..=random.below(4) {
+        let at = random.below(bytes.len());
+        match random.below(5) {
+            0 => bytes[at] = random.below(256) as u8,
+            1 => bytes[at] = TELLING[random.below(TELLING.len())],
+            2 => bytes.insert(at, TELLING[random.below(TELLING.len())]),
+            3 => drop(bytes.drain(at..(at + 1 + random.below(12)).min(bytes.len() - 1).max(at))),
+            _ => {
+                let length = random.below(40).min(bytes.len() - at);
+                let to = random.below(bytes.len() - length + 1);
+                bytes.copy_within(at..at + length, to);
             }
         }
     }
@@ -55,12 +46,12 @@ impl Random {
 #[test]
 fn a_file_changed_at_random_is_refused_or_read_without_contradiction() {
     const CHANGES: usize = 1500;
-    let mut random = Random(1);
+    let mut random = Random::new(1);
     let (mut accepted, mut rejected) = (0, 0);
     for file in VALID {
         for _ in 0..CHANGES {
             let mut bytes = file.bytes.to_vec();
-            random.mutate(&mut bytes);
+            mutate(&mut random, &mut bytes);
             match parse(&bytes) {
                 Ok(mesh) => {
                     accepted += 1;

@@ -2,6 +2,7 @@
 
 use super::points::{boundary, interior, on_interfaces};
 use super::{PLANTED, ROUNDING, solutions};
+use crate::numeric::largest;
 use crate::problem::cases::ExactSolution;
 
 /// Step of the central differences: truncation `STEP^2` times third derivatives, rounding `1e-16 / STEP`.
@@ -51,11 +52,6 @@ fn difference(f: impl Fn(f64, f64) -> f64, [x, y]: [f64; 2], k: usize) -> f64 {
     (f(x + dx, y + dy) - f(x - dx, y - dy)) / (2.0 * STEP)
 }
 
-/// The largest of the numbers, and NaN if one of them is.
-fn largest(values: impl Iterator<Item = f64>) -> f64 {
-    values.fold(0.0, |max, value| if value.is_nan() || max < value { value } else { max })
-}
-
 /// The size of the data: relative to it the defects are judged.
 fn scale(fields: &Fields, points: &[[f64; 2]]) -> f64 {
     let sizes = points.iter().flat_map(|&[x, y]| {
@@ -99,7 +95,7 @@ fn equation_defect(fields: &Fields, points: &[[f64; 2]]) -> f64 {
 fn contact_defect(fields: &Fields, points: &[[f64; 2]]) -> f64 {
     let defect = |&[x, y]: &[f64; 2]| {
         let (w, lambda) = (fields.gap(x, y), (fields.lambda)(x, y));
-        largest([-w, -lambda, (lambda * w).abs()].into_iter())
+        largest([-w, -lambda, (lambda * w).abs()])
     };
     largest(points.iter().map(defect))
 }
@@ -108,7 +104,7 @@ fn contact_defect(fields: &Fields, points: &[[f64; 2]]) -> f64 {
 fn boundary_defect(fields: &Fields, points: &[[f64; 2]]) -> f64 {
     let defect = |&[x, y]: &[f64; 2]| {
         let ([u1, u2], g) = ((fields.u)(x, y), (fields.height)(x, y));
-        largest([(u1 - g).abs(), u2.abs(), -g].into_iter())
+        largest([(u1 - g).abs(), u2.abs(), -g])
     };
     largest(points.iter().map(defect))
 }
