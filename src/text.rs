@@ -3,5 +3,7 @@
 mod names;
 mod number;
 
-pub(crate) use names::{excerpt, meant, nearest, path_excerpt};
+#[cfg(feature = "cli")]
+pub(crate) use names::beginning;
+pub(crate) use names::{excerpt, meant, nearest};
 pub(crate) use number::{Number, grouped};

@@ -3,20 +3,13 @@
 /// Characters of a text from a file that a message shows.
 const SHOWN: usize = 32;
 
-/// Characters of a path from a file that a message shows.
-const SHOWN_OF_A_PATH: usize = 160;
-
 /// The first characters of a text from a file, without line breaks or control characters, for a message of one line.
 pub(crate) fn excerpt(text: &str) -> String {
     beginning(text, SHOWN)
 }
 
-/// The like for a path from a file, of which more is shown.
-pub(crate) fn path_excerpt(text: &str) -> String {
-    beginning(text, SHOWN_OF_A_PATH)
-}
-
-fn beginning(text: &str, shown: usize) -> String {
+/// The first `shown` characters, likewise.
+pub(crate) fn beginning(text: &str, shown: usize) -> String {
     let mut escaped = text.chars().flat_map(char::escape_debug);
     let mut shown: String = escaped.by_ref().take(shown).collect();
     if escaped.next().is_some() {
@@ -57,7 +50,7 @@ mod tests {
             format!("{}...", "\\t".repeat(SHOWN / 2)),
             "also when escaped"
         );
-        assert_eq!(path_excerpt(&"x".repeat(1000)).len(), SHOWN_OF_A_PATH + "...".len());
+        assert_eq!(beginning(&"x".repeat(1000), 160).len(), 160 + "...".len());
     }
 
     #[test]

@@ -14,13 +14,16 @@ use crate::cli::case::CaseId;
 use crate::cli::failure::Failure;
 use crate::formats::read_regular;
 use crate::output::{FileSet, WriteSeek, prepare_folder, remove, write_atomically};
-use crate::text::path_excerpt;
+use crate::text::beginning;
 
 /// What a folder knows of its case.
 const RECORD: &str = "membranes.json";
 
 /// The longest record, bytes: one of a path of 4096, each of them escaped, has less than half of it.
 const LONGEST_RECORD: u64 = 1 << 16;
+
+/// Characters of a path or of settings from a record that a message shows.
+const SHOWN: usize = 160;
 
 const REMEDY: &str = "name another folder with --out, or replace them with --overwrite";
 
@@ -109,7 +112,7 @@ impl Folder {
             return Some(Conflict { parts, why: format!("holds {first}, and no record of its case") });
         };
         if known.fingerprint != claim.case.fingerprint {
-            let case = path_excerpt(&known.case);
+            let case = shown(&known.case);
             let why = if known.case == claim.case.name {
                 format!("holds results of an earlier version of {case}")
             } else {
@@ -120,7 +123,7 @@ impl Folder {
         let part = claim.part;
         let before = known.settings.get(part.name())?;
         let there = self.holds(part).filter(|_| *before != claim.settings)?;
-        let [before, now] = [before, &claim.settings].map(|settings| path_excerpt(settings));
+        let [before, now] = [before, &claim.settings].map(|text| shown(text));
         let why = format!("holds {there} of other settings ({before}; now {now})");
         Some(Conflict { parts: vec![part], why })
     }
@@ -173,6 +176,11 @@ impl Results<'_> {
     pub(crate) fn publish(self) -> Result<(), Failure> {
         self.files.publish().map_err(|error| cannot_write(self.folder, &error))
     }
+}
+
+/// What a record holds, in a message.
+fn shown(text: &str) -> String {
+    beginning(text, SHOWN)
 }
 
 fn cannot_write(path: &Path, error: &std::io::Error) -> Failure {
