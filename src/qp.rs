@@ -23,6 +23,7 @@ mod limits;
 #[cfg(feature = "osqp")]
 mod osqp;
 mod problem;
+mod status;
 mod time_limit;
 
 #[cfg(feature = "clarabel")]
@@ -30,7 +31,7 @@ pub use self::clarabel::Clarabel;
 #[cfg(feature = "osqp")]
 pub use self::osqp::Osqp;
 pub use answer::Answer;
-pub use backend::{BackendError, QpBackend, QpOptions, QpSolution, Status};
+pub use backend::{BackendError, QpBackend, QpOptions, QpSolution};
 pub use contact::contact_qp;
 #[cfg(feature = "files")]
 pub use export::{QpPart, write_matrix_market, write_npz, write_qps};
@@ -40,4 +41,5 @@ pub use kkt::KktResiduals;
 pub use limits::Interrupt;
 pub(crate) use limits::Limits;
 pub use problem::{QpError, QpProblem};
+pub use status::Status;
 pub use time_limit::{TimeLimit, TimeLimitError};

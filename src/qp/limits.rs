@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use web_time::Instant;
 
-use super::backend::Status;
+use super::status::Status;
 use super::time_limit::TimeLimit;
 
 /// What a solver asks between its steps: whether to stop now. Clones ask the same.
