@@ -1,4 +1,4 @@
-//! Random numbers for the tests of all rooms.
+//! Random numbers for the tests of all rooms, and for `tests/it`, which takes in this file.
 
 /// Pseudorandom numbers (xorshift64*, Vigna 2016) that are the same in every run.
 pub(crate) struct Random(u64);

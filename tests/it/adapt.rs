@@ -10,10 +10,10 @@ use membrane_contact::study::{
     AdaptiveLevel, AdaptiveStudy, ConvergenceStudy, LevelErrors, Tolerance, exponent,
 };
 use serde_json::Value;
-use tempfile::tempdir;
+use tempfile::TempDir;
 
 use crate::common::exact;
-use crate::program::{Run, lines_too_long, run};
+use crate::program::{Run, folder_with_case, lines_too_long, run};
 
 /// How far the slope over a few levels may be from the best one, `-1/2`.
 const SLOPE: f64 = 0.06;
@@ -98,9 +98,8 @@ fn the_bound_is_sharp_on_smooth_data() {
 const CASE: &str = "case = \"l-shape-free\"\n[mesh]\ncells = 4\n";
 
 /// Runs on `case.toml` in a new folder.
-fn in_folder(case: &str, arguments: &[&str]) -> (tempfile::TempDir, Vec<Run>) {
-    let folder = tempdir().expect("a temporary folder");
-    fs::write(folder.path().join("case.toml"), case).expect("it is writable");
+fn in_folder(case: &str, arguments: &[&str]) -> (TempDir, Vec<Run>) {
+    let folder = folder_with_case(case);
     let runs = arguments.iter().map(|arguments| run(folder.path(), arguments)).collect();
     (folder, runs)
 }

@@ -10,10 +10,10 @@ use membrane_contact::mesh::{Pattern, rectangle};
 use membrane_contact::qp::{Clarabel, QpBackend, QpOptions, contact_qp};
 use npyz::WriterBuilder;
 use serde_json::Value;
-use tempfile::{TempDir, tempdir};
+use tempfile::TempDir;
 use zip::write::SimpleFileOptions;
 
-use super::program::{Run, files, run};
+use super::program::{Run, files, folder_with_case, run};
 
 const CELLS: usize = 6;
 
@@ -61,8 +61,7 @@ fn write_answer(path: &Path, x: &[f64], y: &[f64]) {
 }
 
 fn folder_with(x: &[f64], y: &[f64]) -> TempDir {
-    let folder = tempdir().expect("a temporary folder");
-    fs::write(folder.path().join("case.toml"), CASE).expect("writable");
+    let folder = folder_with_case(CASE);
     write_answer(&folder.path().join("answer.npz"), x, y);
     folder
 }

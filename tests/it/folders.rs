@@ -4,18 +4,12 @@ use std::fs;
 use std::path::Path;
 
 use serde_json::Value;
-use tempfile::{TempDir, tempdir};
+use tempfile::TempDir;
 
 use super::bad_input::MESH;
-use super::program::{files, run};
+use super::program::{files, folder_with_case, run};
 
 const CASE: &str = "case = \"l-shape-free\"\n[mesh]\ncells = 4\n";
-
-fn folder_with(case: &str) -> TempDir {
-    let folder = tempdir().expect("a temporary folder");
-    write(folder.path(), case);
-    folder
-}
 
 fn write(folder: &Path, case: &str) {
     fs::write(folder.join("case.toml"), case).expect("it is writable");
@@ -43,7 +37,7 @@ fn refused(folder: &TempDir, arguments: &str) -> String {
 
 #[test]
 fn files_of_an_earlier_solution_go_with_it_and_those_of_others_stay() {
-    let folder = folder_with(CASE);
+    let folder = folder_with_case(CASE);
     run(folder.path(), "solve case.toml -q --dual").success();
     fs::write(folder.path().join("out/case/notes.txt"), "").unwrap();
     run(folder.path(), "solve case.toml -q --refine 1").success();
@@ -53,7 +47,7 @@ fn files_of_an_earlier_solution_go_with_it_and_those_of_others_stay() {
 
 #[test]
 fn another_case_is_refused_by_every_command_and_told_to_takes_the_place_of_all() {
-    let folder = folder_with(CASE);
+    let folder = folder_with_case(CASE);
     for command in [
         "adapt case.toml -q --tolerance 0.2",
         "converge case.toml -q --levels 2",
@@ -81,7 +75,7 @@ fn another_case_is_refused_by_every_command_and_told_to_takes_the_place_of_all()
 
 #[test]
 fn the_same_case_goes_on_whatever_is_said_around_it() {
-    let folder = folder_with(CASE);
+    let folder = folder_with_case(CASE);
     run(folder.path(), "adapt case.toml -q --tolerance 0.2").success();
     let table = || fs::read_to_string(folder.path().join("out/case/adapt.csv")).unwrap();
     let before = table();
@@ -106,7 +100,7 @@ fn the_same_case_goes_on_whatever_is_said_around_it() {
 #[test]
 fn the_contents_of_the_mesh_file_belong_to_the_case() {
     let folder =
-        folder_with("[membranes]\ntension = [1, 3]\nload = [-15, 10]\n[domain]\nmesh = \"plate.msh\"\n");
+        folder_with_case("[membranes]\ntension = [1, 3]\nload = [-15, 10]\n[domain]\nmesh = \"plate.msh\"\n");
     let mesh = |text: &str| fs::write(folder.path().join("plate.msh"), text).unwrap();
     mesh(MESH);
     run(folder.path(), "solve case.toml -q").success();
@@ -118,7 +112,7 @@ fn the_contents_of_the_mesh_file_belong_to_the_case() {
 
 #[test]
 fn what_no_record_speaks_for_is_not_put_at_risk() {
-    let folder = folder_with(CASE);
+    let folder = folder_with_case(CASE);
     run(folder.path(), "solve case.toml -q").success();
     let record = folder.path().join("out/case/membranes.json");
     for broken in [None, Some("{"), Some("[]")] {
@@ -141,7 +135,7 @@ fn what_no_record_speaks_for_is_not_put_at_risk() {
 
 #[test]
 fn programs_of_two_meshes_do_not_lie_in_one_folder() {
-    let folder = folder_with(CASE);
+    let folder = folder_with_case(CASE);
     run(folder.path(), "export case.toml -q --format npz").success();
     run(folder.path(), "export case.toml -q --format mtx").success();
     assert!(

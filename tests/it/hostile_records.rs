@@ -5,9 +5,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
-use tempfile::{TempDir, tempdir};
+use tempfile::TempDir;
 
-use super::program::run;
+use super::program::{folder_with_case, run};
 
 const CASE: &str = "case = \"l-shape-free\"\n[mesh]\ncells = 4\n";
 
@@ -16,8 +16,7 @@ const LONGEST_MESSAGE: usize = 500;
 
 /// A folder with results of [`CASE`], and its record.
 fn solved() -> (TempDir, PathBuf) {
-    let folder = tempdir().expect("a temporary folder");
-    fs::write(folder.path().join("case.toml"), CASE).expect("it is writable");
+    let folder = folder_with_case(CASE);
     run(folder.path(), "solve case.toml -q").success();
     let record = folder.path().join("out/case/membranes.json");
     (folder, record)
@@ -138,8 +137,7 @@ fn what_has_no_end_is_not_read() {
 #[cfg(unix)]
 #[test]
 fn levels_without_end_are_computed_anew() {
-    let folder = tempdir().expect("a temporary folder");
-    fs::write(folder.path().join("case.toml"), "case = \"strip\"\n[mesh]\ncells = 4\n").unwrap();
+    let folder = folder_with_case("case = \"strip\"\n[mesh]\ncells = 4\n");
     let converge = || run(folder.path(), "converge case.toml -q --levels 2 --no-picture").success();
     converge();
     let path = folder.path().join("out/case/summary.csv");

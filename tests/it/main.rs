@@ -22,6 +22,7 @@ mod pictures;
 mod plate;
 mod program;
 mod quadrature;
+#[path = "../../src/numeric/random.rs"]
 mod random;
 mod readme;
 mod resume;

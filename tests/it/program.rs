@@ -43,6 +43,13 @@ fn folder_with(case: &str) -> TempDir {
     folder
 }
 
+/// A new folder with the file `case.toml`.
+pub fn folder_with_case(case: &str) -> TempDir {
+    let folder = tempdir().expect("a temporary folder");
+    fs::write(folder.path().join("case.toml"), case).expect("it is writable");
+    folder
+}
+
 /// The program, to be run in `folder` with these arguments.
 pub fn command(folder: &Path, arguments: &str) -> Command {
     let mut command = Command::new(assert_cmd::cargo::cargo_bin!("membranes"));

@@ -4,9 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use tempfile::tempdir;
-
-use super::program::{Run, command, files};
+use super::program::{Run, command, files, folder_with_case};
 use super::timeless::timeless;
 
 /// Files by name, without what they say about time.
@@ -76,8 +74,7 @@ cells = 32
 
 /// All files that the work leaves with this number of threads.
 fn results(work: &Work, case: &str, threads: usize) -> Files {
-    let folder = tempdir().expect("a temporary folder");
-    fs::write(folder.path().join("case.toml"), case).expect("it is writable");
+    let folder = folder_with_case(case);
     for arguments in work.arguments {
         let mut command = command(folder.path(), arguments);
         let run =

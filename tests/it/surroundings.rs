@@ -11,7 +11,7 @@ use std::time::{Duration, Instant, SystemTime};
 use serde_json::Value;
 use tempfile::{TempDir, tempdir};
 
-use super::program::{Run, command, files, run};
+use super::program::{Run, command, files, folder_with_case, run};
 use super::random::Random;
 use super::timeless::timeless;
 
@@ -34,12 +34,6 @@ const AT_ONCE: Duration = Duration::from_secs(1);
 /// What anything may take on top on a machine that has other work to do. What does not end by itself here takes minutes;
 /// `docs/reliability.md` has the figures of a quiet machine.
 const BUSY: Duration = Duration::from_secs(10);
-
-fn folder_with(case: &str) -> TempDir {
-    let folder = tempdir().expect("a temporary folder");
-    fs::write(folder.path().join("case.toml"), case).expect("it is writable");
-    folder
-}
 
 fn start(folder: &Path, arguments: &str) -> Child {
     command(folder, arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it starts")
@@ -105,12 +99,12 @@ fn random() -> Random {
 fn kill_at_random(rounds: usize) {
     let mut random = random();
     for (arguments, milliseconds) in COMMANDS {
-        let undisturbed = folder_with(CASE);
+        let undisturbed = folder_with_case(CASE);
         run(undisturbed.path(), arguments).success();
         let expected = timeless_results(undisturbed.path());
         assert!(expected.len() >= 4 && torn(undisturbed.path()).is_empty(), "{arguments}");
         for _ in 0..rounds {
-            let folder = folder_with(CASE);
+            let folder = folder_with_case(CASE);
             for _ in 0..KILLS {
                 let mut child = start(folder.path(), arguments);
                 sleep(Duration::from_millis(random.between(0.0, milliseconds as f64) as u64));
@@ -141,7 +135,7 @@ fn a_hundred_killed_runs_leave_whole_files_and_go_on_to_the_same_bytes() {
 
 #[test]
 fn what_is_torn_or_another_one_would_be_seen() {
-    let folder = folder_with(CASE);
+    let folder = folder_with_case(CASE);
     for (arguments, _) in COMMANDS {
         run(folder.path(), arguments).success();
     }
@@ -149,7 +143,7 @@ fn what_is_torn_or_another_one_would_be_seen() {
     for (name, bytes) in &whole {
         assert!(is_whole(name, bytes) && !is_whole(name, &bytes[..bytes.len() / 2]), "{name}");
     }
-    let other = folder_with(&CASE.replace("cells = 4", "cells = 5"));
+    let other = folder_with_case(&CASE.replace("cells = 4", "cells = 5"));
     run(other.path(), COMMANDS[2].0).success();
     assert!(
         timeless_results(folder.path())["solution.vtu"] != timeless_results(other.path())["solution.vtu"]
@@ -171,7 +165,7 @@ fn ctrl_c_ends_at_once_and_keeps_what_is_done() {
     let rows = |folder: &Path| {
         fs::read_to_string(folder.join("out/case/adapt.csv")).map_or(0, |table| table.lines().count())
     };
-    let folder = folder_with(CASE);
+    let folder = folder_with_case(CASE);
     let child = start(folder.path(), "adapt case.toml -q --tolerance 1e-6");
     wait_for(|| rows(folder.path()) > 5);
     let asked = Instant::now();
@@ -207,13 +201,13 @@ fn a_time_limit_holds_whatever_the_solver_does() {
         serde_json::from_slice(&results(folder.path())["summary.json"]).expect("JSON")
     };
     // The negative test: with time enough, it is solved.
-    let solved = folder_with(&square(512));
+    let solved = folder_with_case(&square(512));
     run(solved.path(), "solve case.toml -q --backend multigrid --time-limit 600").success();
     assert!(results(solved.path()).contains_key("solution.vtu"));
     // How long that takes on this machine sets the limits: each solver needs about twenty times its own at least. Active-set takes ten
     // times as long as multigrid, interior points and splitting hundreds of times.
     let multigrid = summary(&solved)["seconds"]["solve"].as_f64().expect("seconds");
-    let folder = folder_with(&square(512));
+    let folder = folder_with_case(&square(512));
     let mut solvers =
         vec![("multigrid", multigrid / 20.0), ("active-set", multigrid / 2.0), ("clarabel", 5.0 * multigrid)];
     if cfg!(feature = "osqp") {
@@ -249,7 +243,7 @@ fn a_time_limit_holds_whatever_the_solver_does() {
 
 #[test]
 fn a_time_limit_of_the_command_covers_what_comes_before_the_solve() {
-    let folder = folder_with(&square(64));
+    let folder = folder_with_case(&square(64));
     for command in ["solve", "adapt"] {
         let stopped = run(folder.path(), &format!("{command} case.toml --time-limit 1e-6"));
         assert_eq!((stopped.code, stopped.stderr.lines().count()), (Some(1), 1), "{}", stopped.stderr);
@@ -267,7 +261,7 @@ fn a_time_limit_of_the_command_covers_what_comes_before_the_solve() {
 
 #[test]
 fn studies_stop_in_time_and_go_on_with_more() {
-    let folder = folder_with(CASE);
+    let folder = folder_with_case(CASE);
     for (arguments, table) in [
         ("converge case.toml -q --levels 9", "summary.csv"),
         ("adapt case.toml -q --tolerance 1e-5", "adapt.csv"),
@@ -288,7 +282,7 @@ fn studies_stop_in_time_and_go_on_with_more() {
 
 #[test]
 fn what_does_not_fit_into_memory_is_refused_before_it_is_begun() {
-    let folder = folder_with(&square(16));
+    let folder = folder_with_case(&square(16));
     for arguments in ["solve", "check", "converge", "adapt", "export --format npz"] {
         // 1.6e7 vertices: made in vain, they would take seconds.
         let case = if arguments == "converge" { CASE.into() } else { square(16) };
@@ -324,7 +318,7 @@ fn a_full_disk_loses_nothing_that_was_there() {
         "adapt case.toml -q --tolerance 0.1",
         "export case.toml -q --format mtx --refine 2",
     ] {
-        let folder = folder_with(CASE);
+        let folder = folder_with_case(CASE);
         run(folder.path(), arguments).success();
         let before = results(folder.path());
         assert!(before.len() >= 3, "{arguments}");
@@ -351,7 +345,7 @@ fn a_full_disk_loses_nothing_that_was_there() {
 #[cfg(target_os = "linux")]
 #[test]
 fn a_folder_in_which_nothing_can_be_written_is_refused_before_the_solve() {
-    let folder = folder_with(&square(16));
+    let folder = folder_with_case(&square(16));
     for arguments in ["solve", "adapt", "export --format qps"] {
         // Not even the administrator may make a file there.
         let refused = run(folder.path(), &format!("{arguments} case.toml --out /sys --refine 5"));

@@ -3,9 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use tempfile::{TempDir, tempdir};
-
-use super::program::{lines_too_long, run};
+use super::program::{folder_with_case, lines_too_long, run};
 
 /// Vertices of the unit square in 102 x 102 cells.
 const VERTICES: &str = "10,609";
@@ -32,12 +30,6 @@ const WARNING: &str = "load f1: two quadrature rules differ by";
 const COMMANDS: [&str; 9] =
     ["solve", "check", "converge", "adapt", "bench", "export", "cases", "completions", "man"];
 
-fn folder_with(case: &str) -> TempDir {
-    let folder = tempdir().expect("a temporary folder");
-    fs::write(folder.path().join("case.toml"), case).expect("it is writable");
-    folder
-}
-
 /// A text with single spaces in place of line breaks and indents.
 fn on_one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
@@ -53,7 +45,7 @@ fn unseparated(text: &str) -> Vec<&str> {
 
 #[test]
 fn counts_are_separated_wherever_they_are_printed() {
-    let folder = folder_with(KNOWN);
+    let folder = folder_with_case(KNOWN);
     for arguments in [
         "solve case.toml",
         "check case.toml",
@@ -90,7 +82,7 @@ fn a_count_without_separators_would_be_seen() {
 #[test]
 fn warnings_and_files_are_broken_between_words() {
     let long = format!("title = \"{}\"\n{BLIND}", "a title of many words ".repeat(6));
-    let folder = folder_with(&long);
+    let folder = folder_with_case(&long);
     for arguments in ["solve case.toml --dual", "adapt case.toml --tolerance 0.3", "check case.toml"] {
         let text = run(folder.path(), arguments).success();
         assert_eq!(lines_too_long(&text), [""; 0], "{arguments}");
@@ -108,7 +100,7 @@ fn warnings_and_files_are_broken_between_words() {
 #[test]
 fn converge_names_the_loads_that_the_quadrature_does_not_see() {
     let case = |c: &str| format!("case = \"no-contact\"\n[parameters]\nc = {c}\n[mesh]\ncells = 4\n");
-    let folder = folder_with(&case("0"));
+    let folder = folder_with_case(&case("0"));
     let warning = |vertices: usize| {
         format!(
             "warning, at the finest level ({vertices} vertices): load f2 is zero at all points of the quadrature"
@@ -121,14 +113,14 @@ fn converge_names_the_loads_that_the_quadrature_does_not_see() {
         assert!(words.contains(&warning(vertices)), "{text}");
         assert_eq!((words.matches("warning").count(), lines_too_long(&text)), (1, Vec::new()), "{text}");
     }
-    let seen = folder_with(&case("0.2"));
+    let seen = folder_with_case(&case("0.2"));
     let text = run(seen.path(), "converge case.toml --levels 2").success();
     assert!(!text.contains("warning"), "{text}");
 }
 
 #[test]
 fn where_there_is_no_error_there_is_no_index() {
-    let folder = folder_with("case = \"biactive\"\n[parameters]\nc = 0\n[mesh]\ncells = 4\n");
+    let folder = folder_with_case("case = \"biactive\"\n[parameters]\nc = 0\n[mesh]\ncells = 4\n");
     let text = run(folder.path(), "converge case.toml --levels 1").success();
     assert!(!text.contains("NaN") && text.contains(" -\n"), "{text}");
     let table = fs::read_to_string(folder.path().join("out/case/convergence.md")).expect("it is there");
@@ -161,7 +153,7 @@ fn in_terminal(folder: &Path, arguments: &str) -> Vec<String> {
 #[cfg(target_os = "linux")]
 #[test]
 fn errors_are_broken_between_words_on_a_terminal_and_nowhere_else() {
-    let folder = folder_with(KNOWN);
+    let folder = folder_with_case(KNOWN);
     for arguments in [
         "solve nowhere.toml",
         "solve case.toml --time-limit x",
@@ -186,7 +178,7 @@ fn says_up_to_what(text: &str) -> bool {
 
 #[test]
 fn guaranteed_is_guaranteed_up_to_the_quadrature_of_the_loads() {
-    let folder = folder_with(KNOWN);
+    let folder = folder_with_case(KNOWN);
     let mut pages: Vec<(String, String)> = Vec::new();
     for arguments in COMMANDS.map(|command| format!("{command} --help")).into_iter().chain(
         [

@@ -3,10 +3,9 @@
 use std::fs;
 
 use serde_json::Value;
-use tempfile::tempdir;
 
 use super::outputs::absent_numbers;
-use crate::program::run;
+use crate::program::{folder_with_case, run};
 
 /// What is written in place of the plates' own lines, and what must come out: nothing where it is certified, else what the
 /// message has to say.
@@ -77,8 +76,7 @@ fn complaint((replacements, says): &Change) -> Result<(), String> {
         assert!(case.contains(from), "{from:?} is in the case");
         case = case.replace(from, to);
     }
-    let folder = tempdir().expect("a temporary folder");
-    fs::write(folder.path().join("case.toml"), case).expect("it is writable");
+    let folder = folder_with_case(&case);
     let run = run(folder.path(), "solve case.toml --out results");
     if !says.is_empty() {
         let is_one_line = run.stderr.starts_with("error: case.toml") && run.stderr.lines().count() == 1;
@@ -122,9 +120,7 @@ fn the_other_outcome_is_seen() {
 /// Membranes at rest have no error at all: nothing is refined.
 #[test]
 fn nothing_is_adapted_where_nothing_moves() {
-    let folder = tempdir().expect("a temporary folder");
-    let case = PLATES.replace("[-15.0, 10.0]", "[0, 0]").replace("0.1", "0");
-    fs::write(folder.path().join("case.toml"), case).expect("it is writable");
+    let folder = folder_with_case(&PLATES.replace("[-15.0, 10.0]", "[0, 0]").replace("0.1", "0"));
     run(folder.path(), "adapt case.toml --out results").success();
     let table = fs::read_to_string(folder.path().join("results/adapt.csv")).expect("there is a table");
     assert_eq!(table.lines().count(), 2, "a head and one level: {table}");
