@@ -21,6 +21,8 @@ mod cells;
 mod trace;
 mod warning;
 
+use std::sync::OnceLock;
+
 use cells::{Cells, Sums};
 use trace::Trace;
 pub use warning::LoadWarning;
@@ -147,16 +149,18 @@ impl ErrorBound {
     }
 }
 
-/// The bounds of several errors on one discretization: what depends on the data alone is found once.
+/// The bounds of several errors on one discretization: what depends on the data alone is found once, with the first of them.
 pub struct ErrorBounds<'a> {
+    problem: &'a ContactProblem,
+    domain: Option<&'a Domain>,
     d: &'a Discretization,
-    trace: Trace<'a>,
+    trace: OnceLock<Trace<'a>>,
 }
 
 impl<'a> ErrorBounds<'a> {
     /// For pairs on `d`, the discretization of `problem`; `domain` as in [`ErrorBound::new`].
-    pub fn new(problem: &'a ContactProblem, domain: Option<&Domain>, d: &'a Discretization) -> Self {
-        Self { d, trace: Trace::new(problem, domain, d) }
+    pub fn new(problem: &'a ContactProblem, domain: Option<&'a Domain>, d: &'a Discretization) -> Self {
+        Self { problem, domain, d, trace: OnceLock::new() }
     }
 
     /// [`ErrorBound::new`].
@@ -188,7 +192,8 @@ impl<'a> ErrorBounds<'a> {
         seen: &[Action],
         mut action: Vec<f64>,
     ) -> Result<ErrorBound, MeasureError> {
-        let Self { d, trace } = self;
+        let d = self.d;
+        let trace = self.trace.get_or_init(|| Trace::new(self.problem, self.domain, d));
         let rest_sq = rest_sq(d, seen, &action);
         extend_to_boundary(d, displacement, &mut action);
         let fluxes = WedgeFluxes::new(d, &trace.around, displacement, &action);
