@@ -39,14 +39,13 @@ impl ContactSolver for Auto {
 /// The choice for one discretization. A multigrid that has stalled is not tried again.
 struct PreparedAuto<'d> {
     d: &'d Discretization,
-    multigrid: Option<PreparedMultigrid<'d>>,
-    /// What is not tried again.
-    stalled: Vec<Stalled>,
+    /// Or what has stalled.
+    multigrid: Result<PreparedMultigrid<'d>, Vec<Stalled>>,
 }
 
 impl<'d> PreparedAuto<'d> {
     fn new(d: &'d Discretization) -> Self {
-        Self { d, multigrid: Some(PreparedMultigrid::new(d)), stalled: Vec::new() }
+        Self { d, multigrid: Ok(PreparedMultigrid::new(d)) }
     }
 }
 
@@ -65,7 +64,7 @@ impl PreparedSolver for PreparedAuto<'_> {
         } else {
             (self.multigrid_or_active_set(options)?, "many")
         };
-        let stalled = if size == "many" && self.multigrid.is_none() { "; multigrid stalled" } else { "" };
+        let stalled = if size == "many" && self.multigrid.is_err() { "; multigrid stalled" } else { "" };
         let reason =
             format!("by auto: {size} unknowns ({} a membrane), {hierarchy}{stalled}", grouped(unknowns));
         candidate.statistics.choice = Some(reason);
@@ -76,10 +75,13 @@ impl PreparedSolver for PreparedAuto<'_> {
 impl PreparedAuto<'_> {
     /// Multigrid, and the active set method in the time that is left where it stalls: that needs no levels to be good.
     fn multigrid_or_active_set(&mut self, options: &SolverOptions) -> Result<Candidate, SolverError> {
-        let Some(multigrid) = &mut self.multigrid else {
-            let mut candidate = ActiveSet.solve(self.d, options)?;
-            candidate.statistics.stalled.clone_from(&self.stalled);
-            return Ok(candidate);
+        let multigrid = match &mut self.multigrid {
+            Ok(multigrid) => multigrid,
+            Err(stalled) => {
+                let mut candidate = ActiveSet.solve(self.d, options)?;
+                candidate.statistics.stalled.clone_from(stalled);
+                return Ok(candidate);
+            }
         };
         let start = Instant::now();
         let stalled = multigrid.solve(options)?;
@@ -87,12 +89,13 @@ impl PreparedAuto<'_> {
         if stalled.statistics.status != Status::Stalled || left == Some(None) {
             return Ok(stalled);
         }
-        self.multigrid = None;
+        // Its levels go before the other method needs memory.
+        self.multigrid = Err(Vec::new());
         let mut candidate =
             ActiveSet.solve(self.d, &SolverOptions { time_limit: left.flatten(), ..options.clone() })?;
         let method = format!("{} on algebraic levels", Multigrid.name());
         candidate.statistics = candidate.statistics.after(method, stalled.statistics);
-        self.stalled.clone_from(&candidate.statistics.stalled);
+        self.multigrid = Err(candidate.statistics.stalled.clone());
         Ok(candidate)
     }
 }

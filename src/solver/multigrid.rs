@@ -47,24 +47,26 @@ impl ContactSolver for Multigrid {
 pub(super) struct PreparedMultigrid<'d> {
     d: &'d Discretization,
     hierarchy: Option<Hierarchy>,
-    /// How levels are made.
-    levels: fn(&Discretization) -> Hierarchy,
-    /// Levels that are not tried again.
+    /// Levels that are not tried again: those of the refinements, once it has stalled on them.
     stalled: Vec<Stalled>,
 }
 
 impl<'d> PreparedMultigrid<'d> {
     pub(super) fn new(d: &'d Discretization) -> Self {
-        Self { d, hierarchy: None, levels: Hierarchy::new, stalled: Vec::new() }
+        Self { d, hierarchy: None, stalled: Vec::new() }
     }
 
-    /// Solves on the levels as they are; the time limit counts from `start`.
-    fn attempt(&mut self, options: &SolverOptions, start: Instant) -> Result<Candidate, SolverError> {
+    /// Solves on the levels that there are, else on those that are made by `levels`; the time limit counts from `start`.
+    fn attempt(
+        &mut self,
+        levels: fn(&Discretization) -> Hierarchy,
+        options: &SolverOptions,
+        start: Instant,
+    ) -> Result<Candidate, SolverError> {
         let begin = Instant::now();
-        let (d, levels) = (self.d, self.levels);
-        let hierarchy = self.hierarchy.get_or_insert_with(|| levels(d));
+        let hierarchy = self.hierarchy.get_or_insert_with(|| levels(self.d));
         let setup_seconds = begin.elapsed().as_secs_f64();
-        let mut candidate = solve_on(hierarchy, d, options, start)?;
+        let mut candidate = solve_on(hierarchy, self.d, options, start)?;
         candidate.statistics.setup_seconds = setup_seconds;
         candidate.statistics.solve_seconds = begin.elapsed().as_secs_f64() - setup_seconds;
         Ok(candidate)
@@ -75,14 +77,14 @@ impl PreparedSolver for PreparedMultigrid<'_> {
     fn solve(&mut self, options: &SolverOptions) -> Result<Candidate, SolverError> {
         options.check()?;
         let start = Instant::now();
-        let mut candidate = self.attempt(options, start)?;
+        let mut candidate = self.attempt(Hierarchy::new, options, start)?;
         candidate.statistics.stalled.clone_from(&self.stalled);
         let refinements = self.hierarchy.as_ref().map_or(0, Hierarchy::refinements);
         if candidate.statistics.status != Status::Stalled || refinements == 0 {
             return Ok(candidate);
         }
-        (self.hierarchy, self.levels) = (None, Hierarchy::algebraic);
-        let mut on_algebraic_levels = self.attempt(options, start)?;
+        self.hierarchy = None;
+        let mut on_algebraic_levels = self.attempt(Hierarchy::algebraic, options, start)?;
         let method = format!("{NAME} on levels of {refinements} refinements");
         on_algebraic_levels.statistics = on_algebraic_levels.statistics.after(method, candidate.statistics);
         self.stalled.clone_from(&on_algebraic_levels.statistics.stalled);
