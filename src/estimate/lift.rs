@@ -6,6 +6,7 @@ use crate::discretization::Discretization;
 use crate::fem::CutRule;
 use crate::geometry::twice_signed_area;
 use crate::mesh::{Mesh, SubTriangulation};
+use crate::parallel::blocks_of;
 use crate::parallel::prelude::*;
 
 /// Triangles that are integrated together: enough for all threads, few enough to need no memory.
@@ -71,10 +72,9 @@ fn functionals(mesh: &Mesh, rule: &CutRule, rho: impl Fn(usize, [f64; 2]) -> f64
         [deep, [0, 1, 2].map(|i| deep[i] - shallow[i])]
     };
     let mut sums = [vec![0.0; mesh.points().len()], vec![0.0; mesh.points().len()]];
-    for (batch, triangles) in mesh.triangles().chunks(BATCH).enumerate() {
-        let integrals: Vec<_> =
-            (0..triangles.len()).into_par_iter().map(|t| on_triangle(batch * BATCH + t)).collect();
-        for (corners, integrals) in triangles.iter().zip(integrals) {
+    for batch in blocks_of(BATCH, mesh.triangles().len()) {
+        let integrals: Vec<_> = batch.clone().into_par_iter().map(on_triangle).collect();
+        for (corners, integrals) in mesh.triangles()[batch].iter().zip(integrals) {
             for (sum, integral) in sums.iter_mut().zip(integrals) {
                 (0..3).for_each(|i| sum[corners[i]] += integral[i]);
             }

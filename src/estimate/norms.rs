@@ -6,6 +6,7 @@ use crate::action::ContactSolution;
 use crate::discretization::{Discretization, Displacement};
 use crate::fem::{CutRule, gradient};
 use crate::mesh::{Mesh, SubTriangulation, VertexKind};
+use crate::parallel::blocks_of;
 use crate::parallel::prelude::*;
 use crate::problem::{Domain, ExactSolution};
 
@@ -224,11 +225,9 @@ fn integrate(
         }
         sums
     };
-    let triangles = mesh.triangles().len();
     let mut total = [Integrals::default(); 2];
-    for start in (0..triangles).step_by(BATCH) {
-        let end = (start + BATCH).min(triangles);
-        let batch: Vec<_> = (start..end).into_par_iter().map(on_triangle).collect();
+    for batch in blocks_of(BATCH, mesh.triangles().len()) {
+        let batch: Vec<_> = batch.into_par_iter().map(on_triangle).collect();
         // Added in one order, whatever the number of threads.
         for sums in &batch {
             (0..2).for_each(|depth| total[depth].add(&sums[depth]));

@@ -8,6 +8,7 @@ use super::quadrature::DEGREE_4;
 use super::second_rule::SecondRule;
 use crate::geometry::{poincare, twice_signed_area};
 use crate::mesh::{Mesh, VertexTriangles, corner_of};
+use crate::parallel::blocks_of;
 use crate::parallel::prelude::*;
 use crate::problem::{EvaluationError, Function};
 
@@ -44,8 +45,8 @@ impl LoadMoments {
             return Ok(Self::Constant(value));
         }
         let triangles = mesh.triangles().len();
-        let blocks = || (0..triangles.div_ceil(BATCH)).into_par_iter();
-        let area_of = |block: usize| triangles_of(mesh, block).map(|t| mesh.triangle_area(t)).sum();
+        let blocks = || blocks_of(BATCH, triangles).into_par_iter();
+        let area_of = |block: Range<usize>| block.map(|t| mesh.triangle_area(t)).sum();
         let areas: Vec<f64> = blocks().map(area_of).collect();
         let second_rule = SecondRule::new(areas.iter().sum());
         // Collected before errors are looked for, so that the first in the order of the triangles is named.
@@ -201,11 +202,10 @@ struct Block {
 /// The moments on one block of triangles.
 fn on_block(
     mesh: &Mesh,
-    block: usize,
+    triangles: Range<usize>,
     f: &Function,
     second_rule: &SecondRule,
 ) -> Result<Block, EvaluationError> {
-    let triangles = triangles_of(mesh, block);
     let (mut first, mut second) = (Values::default(), Values::default());
     for t in triangles.clone() {
         first.add_points(mesh.corners(t), DEGREE_4.points);
@@ -237,11 +237,6 @@ fn on_block(
         found.excess_sq += poincare(mesh.diameter_sq(t).sqrt()).powi(2) * excess_sq;
     }
     Ok(found)
-}
-
-/// The triangles of a block.
-fn triangles_of(mesh: &Mesh, block: usize) -> Range<usize> {
-    block * BATCH..((block + 1) * BATCH).min(mesh.triangles().len())
 }
 
 /// A function at many points.

@@ -7,9 +7,14 @@ use super::prelude::*;
 /// Vertices, triangles or rows that are worked on together.
 pub(crate) const BLOCK: usize = 4096;
 
-/// `0..count` in blocks.
+/// `0..count` in blocks of [`BLOCK`].
 pub(crate) fn blocks(count: usize) -> Vec<Range<usize>> {
-    (0..count).step_by(BLOCK).map(|first| first..(first + BLOCK).min(count)).collect()
+    blocks_of(BLOCK, count)
+}
+
+/// `0..count` in blocks of `size`.
+pub(crate) fn blocks_of(size: usize, count: usize) -> Vec<Range<usize>> {
+    (0..count).step_by(size).map(|first| first..(first + size).min(count)).collect()
 }
 
 /// `term(0) + ... + term(count - 1)`, in parallel, in an order that does not depend on the number of threads.
