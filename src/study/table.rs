@@ -46,9 +46,9 @@ pub struct LevelErrors {
 }
 
 impl LevelErrors {
-    /// The bound over the energy error.
-    pub fn effectivity(&self) -> f64 {
-        self.bound / self.energy
+    /// The bound over the energy error, where there is an error.
+    pub fn effectivity(&self) -> Option<f64> {
+        Some(self.bound / self.energy).filter(|index| index.is_finite())
     }
 }
 
@@ -101,9 +101,8 @@ pub fn markdown(levels: &[LevelErrors]) -> String {
             let rate = rate.map_or_else(String::new, |rate| format!("{rate:.2}"));
             text += &format!(" {:.2e} | {rate} |", (measure.of)(level));
         }
-        // Where there is no error, there is no index.
-        let effectivity = Some(level.effectivity()).filter(|index| index.is_finite());
-        text += &format!(" {} |\n", effectivity.map_or_else(String::new, |index| format!("{index:.2}")));
+        text +=
+            &format!(" {} |\n", level.effectivity().map_or_else(String::new, |index| format!("{index:.2}")));
     }
     text += "| all levels | |";
     for measure in MEASURES {

@@ -233,12 +233,11 @@ fn warning_lines(levels: &[LevelErrors], warnings: &[LoadWarning]) -> String {
     warnings.iter().map(line).collect()
 }
 
-/// Where there is no error, there is no index.
-fn index_text(index: f64) -> String {
+fn index_text(index: Option<f64>) -> String {
     match index {
-        index if !index.is_finite() => "-".into(),
-        index if index < 1e5 => format!("{index:.2}"),
-        index => format!("{index:.1e}"),
+        None => "-".into(),
+        Some(index) if index < 1e5 => format!("{index:.2}"),
+        Some(index) => format!("{index:.1e}"),
     }
 }
 
