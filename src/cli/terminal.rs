@@ -16,7 +16,7 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
 }
 
 /// Columns of a terminal that nobody has made wider.
-const COLUMNS: usize = 80;
+pub(crate) const COLUMNS: usize = 80;
 
 /// A text in lines of at most 80 columns, broken between words; all lines but the first begin with so many spaces. A word that is
 /// too long for a line, such as a path, stays whole: it can be copied.

@@ -1,8 +1,7 @@
 //! A certified solution together with the bound of its error.
 
-use web_time::Instant;
-
 use thiserror::Error;
+use web_time::Instant;
 
 use super::prolongation::Fields;
 use crate::action::{ContactSolution, Rejected, certify};

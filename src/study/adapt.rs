@@ -1,6 +1,7 @@
 //! Meshes that are refined where the error is.
 
 use std::sync::Arc;
+
 use web_time::Instant;
 
 use super::accuracy::{Bounded, Tolerance, solve_bounded};

@@ -18,6 +18,7 @@ pub use row::{Curve, Row, curves, slope};
 pub use square::{SQUARE, square_mesh, square_problem};
 
 use std::collections::BTreeMap;
+
 use web_time::Instant;
 
 use crate::action::{Residuals, certify};

@@ -1,8 +1,7 @@
 //! Errors on a sequence of refined meshes.
 
-use web_time::Instant;
-
 use thiserror::Error;
+use web_time::Instant;
 
 use super::LevelErrors;
 use super::accuracy::{AccuracyError, Bounded, Tolerance, solve_bounded};

@@ -10,6 +10,7 @@ use super::progress::Progress;
 use crate::cli::args::CaseArguments;
 use crate::cli::case::{CaseFile, CaseId, MeshSource, SolverName, SolverSettings};
 use crate::cli::failure::Failure;
+use crate::cli::terminal::COLUMNS;
 use crate::discretization::Discretization;
 use crate::formats::gmsh::{PhysicalGroup, parse};
 use crate::mesh::{GmshMesh, MAX_VERTICES, MeshFamily, ReadError, estimated_vertices, generate, gmsh_nodes};
@@ -78,7 +79,7 @@ impl Setup {
 /// The groups that a run does not use, in one line for the terminal; nothing where there are none.
 pub(crate) fn unused_groups(groups: &[PhysicalGroup]) -> String {
     /// Names are left out where the line would become wider than 80 columns.
-    const WIDEST: usize = 80 - ", and 1,000 more".len();
+    const WIDEST: usize = COLUMNS - ", and 1,000 more".len();
     let mut line = String::from("  physical groups not used:");
     for (k, group) in groups.iter().enumerate() {
         let name = excerpt(&group.to_string());

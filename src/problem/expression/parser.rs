@@ -66,7 +66,7 @@ const VALUES: [(&str, Instruction); 3] =
 /// What waits for the values to its right.
 enum Pending {
     /// An operator; its left operand, where it has one, is already in the program.
-    Operation { level: Precedence, instruction: Instruction },
+    Operation { precedence: Precedence, instruction: Instruction },
     /// An opening parenthesis, of a group or of a call.
     Open { column: usize, call: Option<Call> },
 }
@@ -117,7 +117,7 @@ impl<'a> Parser<'a> {
                 Token::Operator(_, Instruction::Add) => {}
                 Token::Operator(_, Instruction::Subtract) => {
                     self.pending.push(Pending::Operation {
-                        level: Precedence::Sign,
+                        precedence: Precedence::Sign,
                         instruction: Instruction::Negate,
                     });
                 }
@@ -137,8 +137,8 @@ impl<'a> Parser<'a> {
             let lexeme = self.lexer.next()?;
             let column = lexeme.column;
             match lexeme.token {
-                Token::Operator(level, instruction) => {
-                    self.binary(level, instruction, column)?;
+                Token::Operator(precedence, instruction) => {
+                    self.binary(precedence, instruction, column)?;
                     return Ok(true);
                 }
                 Token::Comma => {
@@ -166,10 +166,10 @@ impl<'a> Parser<'a> {
         if self.program.push(instruction) { Ok(()) } else { Err(ExpressionError::TooDeep { column }) }
     }
 
-    /// Emits the operators since the last opening parenthesis that bind at least as tightly as `level`.
-    fn complete_operations(&mut self, level: Precedence, column: usize) -> Result<(), ExpressionError> {
-        while let Some(&Pending::Operation { level: waiting, instruction }) = self.pending.last()
-            && waiting >= level
+    /// Emits the operators since the last opening parenthesis that bind at least as tightly as `precedence`.
+    fn complete_operations(&mut self, precedence: Precedence, column: usize) -> Result<(), ExpressionError> {
+        while let Some(&Pending::Operation { precedence: waiting, instruction }) = self.pending.last()
+            && waiting >= precedence
         {
             self.pending.pop();
             self.emit(instruction, column)?;
@@ -179,32 +179,35 @@ impl<'a> Parser<'a> {
 
     fn binary(
         &mut self,
-        level: Precedence,
+        precedence: Precedence,
         instruction: Instruction,
         column: usize,
     ) -> Result<(), ExpressionError> {
         // Powers wait for each other, because they group to the right.
-        if level != Precedence::Power {
-            let tighter = if level == Precedence::Comparison { Precedence::Sum } else { level };
+        if precedence != Precedence::Power {
+            let tighter = if precedence == Precedence::Comparison { Precedence::Sum } else { precedence };
             self.complete_operations(tighter, column)?;
         }
-        if level == Precedence::Comparison
-            && matches!(self.pending.last(), Some(Pending::Operation { level: Precedence::Comparison, .. }))
+        if precedence == Precedence::Comparison
+            && matches!(
+                self.pending.last(),
+                Some(Pending::Operation { precedence: Precedence::Comparison, .. })
+            )
         {
             return Err(ExpressionError::ChainedComparison { column });
         }
-        self.pending.push(Pending::Operation { level, instruction });
+        self.pending.push(Pending::Operation { precedence, instruction });
         Ok(())
     }
 
     fn negation(&mut self, lexeme: Lexeme<'_>) -> Result<(), ExpressionError> {
         match self.pending.last() {
-            Some(Pending::Operation { level, .. }) if *level > Precedence::Not => {
+            Some(Pending::Operation { precedence, .. }) if *precedence > Precedence::Not => {
                 Err(ExpressionError::MisplacedNot { text: lexeme.shown(), column: lexeme.column })
             }
             _ => {
                 self.pending
-                    .push(Pending::Operation { level: Precedence::Not, instruction: Instruction::Not });
+                    .push(Pending::Operation { precedence: Precedence::Not, instruction: Instruction::Not });
                 Ok(())
             }
         }

@@ -1,5 +1,4 @@
 use sprs::{CsMat, TriMat};
-
 use web_time::Instant;
 
 use super::obstacle::SLIGHT;

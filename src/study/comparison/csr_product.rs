@@ -1,9 +1,9 @@
 //! The unit of work: one product of the stiffness matrix with a vector.
 
 use std::hint::black_box;
-use web_time::Instant;
 
 use sprs::CsMat;
+use web_time::Instant;
 
 /// The least number of samples, of which the fastest counts.
 const SAMPLES: usize = 10;
