@@ -8,7 +8,7 @@ use crate::action::{ContactSolution, Rejected, certify};
 use crate::discretization::Discretization;
 use crate::estimate::{ErrorBound, ErrorBounds, MeasureError};
 use crate::problem::{ContactProblem, Domain};
-use crate::solver::{ContactSolver, SolverError, SolverOptions};
+use crate::solver::{Candidate, ContactSolver, SolverError, SolverOptions};
 
 /// Where the tolerance that follows the discretisation starts.
 const LOOSEST: f64 = 1e-3;
@@ -87,34 +87,38 @@ pub fn solve_bounded(
     options: &SolverOptions,
     tolerance: Tolerance,
 ) -> Result<Bounded, AccuracyError> {
-    let mut solver = solver.prepare(d);
     let bounds = ErrorBounds::new(problem, domain, d);
-    let mut at = |tolerance: f64, options: &SolverOptions| {
-        let candidate = solver.solve(&SolverOptions { tolerance, ..options.clone() })?;
+    let bounded = |candidate: Candidate, tolerance: f64| {
         let solution = certify(d, candidate, tolerance)
             .map_err(|rejected| AccuracyError::Rejected(rejected, tolerance))?;
         Ok(Bounded::new(&bounds, solution, tolerance)?)
     };
-    let Tolerance::Fixed(tolerance) = tolerance else {
-        let start = Instant::now();
-        let mut bounded = at(LOOSEST, options)?;
-        // What cannot be had more accurately, or not in time, is certified as it is.
-        while let Some(tighter) = bounded.tighter() {
-            let time_limit = options.time_limit.map(|limit| limit.left_since(start));
-            if time_limit == Some(None) {
-                break;
-            }
-            let time_limit = time_limit.flatten();
-            let warm_start = Some(Fields::from(&bounded.solution).into_start(d));
-            match at(tighter, &SolverOptions { warm_start, time_limit, ..options.clone() }) {
-                Ok(better) => bounded = better,
-                Err(AccuracyError::Rejected(..)) => break,
-                Err(error) => return Err(error),
-            }
-        }
-        return Ok(bounded);
+    if let Tolerance::Fixed(tolerance) = tolerance {
+        // Not prepared: what the solver has made for itself is gone before the bound needs memory.
+        let candidate = solver.solve(d, &SolverOptions { tolerance, ..options.clone() })?;
+        return bounded(candidate, tolerance);
+    }
+    let start = Instant::now();
+    let mut solver = solver.prepare(d);
+    let mut at = |tolerance: f64, options: &SolverOptions| {
+        bounded(solver.solve(&SolverOptions { tolerance, ..options.clone() })?, tolerance)
     };
-    at(tolerance, options)
+    let mut best = at(LOOSEST, options)?;
+    // What cannot be had more accurately, or not in time, is certified as it is.
+    while let Some(tighter) = best.tighter() {
+        let time_limit = options.time_limit.map(|limit| limit.left_since(start));
+        if time_limit == Some(None) {
+            break;
+        }
+        let time_limit = time_limit.flatten();
+        let warm_start = Some(Fields::from(&best.solution).into_start(d));
+        match at(tighter, &SolverOptions { warm_start, time_limit, ..options.clone() }) {
+            Ok(better) => best = better,
+            Err(AccuracyError::Rejected(..)) => break,
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(best)
 }
 
 impl Bounded {
