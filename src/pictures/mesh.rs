@@ -14,6 +14,7 @@ use super::drawing::encode::Drawing;
 use super::drawing::frame::{Frame, NORMAL, SMALL};
 use super::drawing::heading::heading;
 use super::drawing::outline::boundary_edges;
+use crate::text::grouped_by;
 use sizes::Sizes;
 use window::Window;
 
@@ -217,10 +218,7 @@ fn legend(canvas: &mut Canvas, picture: &MeshPicture, sizes: Option<&Sizes>) {
 
 /// A number in groups of three digits, apart by thin spaces.
 fn grouped(number: usize) -> String {
-    let digits = number.to_string();
-    let groups: Vec<&str> =
-        digits.as_bytes().rchunks(3).rev().filter_map(|group| std::str::from_utf8(group).ok()).collect();
-    groups.join("\u{2009}")
+    grouped_by("\u{2009}", number)
 }
 
 #[cfg(test)]

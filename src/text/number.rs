@@ -14,11 +14,16 @@ impl fmt::Display for Number {
 
 /// How many there are of something, its digits in groups of three: `60,003`.
 pub(crate) fn grouped(n: usize) -> String {
+    grouped_by(",", n)
+}
+
+/// The like with another separator.
+pub(crate) fn grouped_by(separator: &str, n: usize) -> String {
     let digits = n.to_string();
     let mut text = String::new();
     for (k, digit) in digits.chars().enumerate() {
         if k > 0 && (digits.len() - k).is_multiple_of(3) {
-            text.push(',');
+            text.push_str(separator);
         }
         text.push(digit);
     }
