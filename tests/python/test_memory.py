@@ -59,7 +59,7 @@ def test_a_run_takes_no_more_memory_than_is_foreseen(
     case.write_text(CASE.format(cells=cells, backend=backend))
     foreseen, taken = estimate(program, case), peak(program, case)
     assert taken <= foreseen <= OVERESTIMATED * taken, (taken / GIB, foreseen / GIB)
-    # The negative test: the estimate of a mesh with a quarter of the vertices would not do, where the mesh is most of it.
+    # The negative test: the estimate of a mesh with a sixteenth of the vertices would not do, where the mesh is most of it.
     if backend == "multigrid":
         case.write_text(CASE.format(cells=cells // 4, backend=backend))
         assert estimate(program, case) < taken

@@ -6,8 +6,8 @@ use crate::text::grouped;
 
 const GIB: f64 = (1u64 << 30) as f64;
 
-/// What a process has that does nothing but draw a picture, bytes.
-const BASE: f64 = 250e6;
+/// What a process has that does nothing but draw a picture, bytes; 60 MB on two cores, and each core has stacks of its own.
+const BASE: f64 = 120e6;
 
 /// Bytes for each vertex of a mesh: the mesh, the discrete problem, a solution, its bound, its files. The program has 890 at its
 /// peak on a million vertices and `auto` (multigrid).
