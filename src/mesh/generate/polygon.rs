@@ -126,7 +126,7 @@ fn with_sides(
     }
     // The corners come first in the triangulation, in the order in which they were given.
     let rings = std::iter::once(vertices).chain(holes.iter().copied());
-    let edges = edges_of_sides(&mesh, rings, &number).ok_or(GenerateError::Holes)?;
+    let edges = edges_of_sides(&mesh, rings, &number[..boundary]).ok_or(GenerateError::Holes)?;
     Ok((mesh, edges))
 }
 
