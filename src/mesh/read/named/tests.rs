@@ -24,6 +24,9 @@ fn refused(text: &str) -> GmshError {
 }
 
 /// The names of regions with their areas, and of curves with their lengths.
+type Measures<'a> = &'a [(&'a str, f64)];
+
+/// Those of a mesh.
 fn measures(mesh: &Mesh) -> Vec<(&str, f64)> {
     let groups = mesh.groups();
     let area = |name: &str| groups.region(name).unwrap().map(|t| mesh.triangle_area(t)).sum();
@@ -34,7 +37,7 @@ fn measures(mesh: &Mesh) -> Vec<(&str, f64)> {
 }
 
 #[track_caller]
-fn assert_measures(mesh: &Mesh, expected: &[(&str, f64)]) {
+fn assert_measures(mesh: &Mesh, expected: Measures) {
     let found = measures(mesh);
     let close = |((name, size), (other, expected)): (&(&str, f64), &(&str, f64))| {
         name == other && (size - expected).abs() <= PLACED * expected
@@ -56,7 +59,7 @@ fn files_in_every_encoding_have_the_groups_that_they_state() {
     let rectangle = [("membrane", 0.96), ("clamped edge", 4.0), ("stiffener", 0.29f64.sqrt())];
     let two = [("membrane", 0.96), ("steel", 0.96), ("clamped edge", 4.0)];
     let one = [("membrane", 0.96), ("clamped edge", 4.0)];
-    let table: [(&[&[u8]], &[(&str, f64)]); 7] = [
+    let table: [(&[&[u8]], Measures); 7] = [
         (
             &[
                 file!("materials_22_ascii"),
