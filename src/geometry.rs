@@ -8,7 +8,7 @@ mod triangle;
 pub use interface::Interface;
 
 pub(crate) use inequalities::{friedrichs, poincare};
-pub(crate) use ring::ring_area;
+pub(crate) use ring::{ring_area, signed_ring_area};
 #[cfg(feature = "pictures")]
 pub(crate) use triangle::barycentric_gradients;
 pub(crate) use triangle::{distance_sq, twice_signed_area};

@@ -4,6 +4,8 @@ mod ancestry;
 mod check;
 mod dual;
 mod generate;
+mod groups;
+mod naming;
 mod read;
 mod refine;
 #[cfg(test)]
@@ -17,6 +19,8 @@ pub use dual::{DualMesh, SubTriangulation};
 pub use generate::{
     GenerateError, MeshSize, Pattern, disk, estimated_vertices, generate, l_shape, polygon, rectangle,
 };
+pub use groups::Groups;
+pub use naming::GroupError;
 #[cfg(feature = "cli")]
 pub(crate) use read::gmsh_nodes;
 pub use read::{GmshMesh, ReadError};

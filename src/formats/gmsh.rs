@@ -15,7 +15,7 @@ mod v2;
 mod v4;
 
 pub use error::{GmshError, Place};
-pub use groups::PhysicalGroup;
+pub use groups::{GroupMembers, PhysicalGroup};
 
 use crate::text::excerpt;
 use elements::Elements;
@@ -32,7 +32,7 @@ pub const FLATNESS: f64 = 1e-8;
 
 /// The triangles of a Gmsh mesh in a plane `z = constant`, as they stand in the file.
 ///
-/// Points and lines of the file are left out. The nodes that only they use are kept.
+/// Points of the file are left out, and lines in no physical group. The nodes that only they use are kept.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GmshTriangulation {
     /// `(x, y)` of every node, in the order of the file, also of nodes that no triangle uses.
@@ -45,17 +45,19 @@ pub struct GmshTriangulation {
     pub element_tags: Vec<u64>,
     /// The physical groups that have a name or members, by dimension and tag, each once.
     pub groups: Vec<PhysicalGroup>,
+    /// Which triangles and lines belong to which of `groups`.
+    pub members: GroupMembers,
 }
 
 /// Reads a mesh from the bytes of a `.msh` file.
 ///
 /// What Gmsh reads is read: other sections, also before `$MeshFormat`, and lines between sections are skipped; the totals at
 /// the head of the sections of MSH 4 may be wrong, the blocks count. A surface that is in several physical groups is written
-/// several times by MSH 2: each triangle is taken once.
+/// several times by MSH 2: each triangle is taken once, and belongs to all of them.
 ///
 /// # Errors
 /// When the file is no complete file of these versions, holds elements that are not triangles of three nodes (points and lines
-/// aside) or no triangle, names a node that does not exist, or when the triangles are not [flat](FLATNESS). Memory and time
+/// aside) or no triangle, names a node that does not exist (in a triangle, or a line of a physical group), or when the triangles are not [flat](FLATNESS). Memory and time
 /// stay proportional to the length of `bytes`, whatever the file declares.
 pub fn parse(bytes: &[u8]) -> Result<GmshTriangulation, GmshError> {
     let (mut scanner, version) = read_format(bytes)?;
@@ -84,18 +86,15 @@ pub fn parse(bytes: &[u8]) -> Result<GmshTriangulation, GmshError> {
         scanner.close_section()?;
     }
     let nodes = nodes.ok_or(GmshError::MissingNodes)?;
-    let elements = elements.ok_or(GmshError::MissingElements)?;
-    if elements.triangles.is_empty() {
-        return Err(GmshError::NoTriangle { others: elements.others });
+    let Elements { triangles, tags, others, labels, lines, strays } =
+        elements.ok_or(GmshError::MissingElements)?;
+    if triangles.is_empty() {
+        return Err(GmshError::NoTriangle { others });
     }
-    check_flat(&nodes, &elements.triangles)?;
-    Ok(GmshTriangulation {
-        points: nodes.points,
-        triangles: elements.triangles,
-        node_tags: nodes.tags,
-        element_tags: elements.tags,
-        groups: groups.into_groups(),
-    })
+    check_flat(&nodes, &triangles)?;
+    let Nodes { points, tags: node_tags, .. } = nodes;
+    let (groups, members) = groups.of_elements(&scanner, labels, lines, &strays)?;
+    Ok(GmshTriangulation { points, triangles, node_tags, element_tags: tags, groups, members })
 }
 
 /// The layouts of the sections.

@@ -14,7 +14,7 @@ use crate::problem::Domain;
 pub(crate) use error::MAX_VERTICES;
 
 use error::check_vertex_estimate;
-use polygon::largest_triangle;
+use polygon::{largest_triangle, polygon_with_names};
 
 /// How fine a mesh to make.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,6 +37,9 @@ pub enum MeshSize {
 }
 
 /// Makes a mesh of `domain`. An unstructured disk, like a structured one, is an inscribed polygon.
+///
+/// The sides have names, which an unstructured mesh shares with a structured one: see [`rectangle`], [`l_shape`], [`disk`]
+/// and [`polygon`].
 ///
 /// # Errors
 /// [`GenerateError`]: sizes or extents out of range, too many vertices, a polygon that is none.
@@ -119,11 +122,13 @@ fn structured(domain: &Domain, cells: usize, pattern: Pattern) -> Result<Mesh, G
 fn unstructured(domain: &Domain, size: f64, min_angle: f64) -> Result<Mesh, GenerateError> {
     match domain {
         Domain::Rectangle { lower: [x0, y0], upper: [x1, y1] } => {
-            polygon(&[[*x0, *y0], [*x1, *y0], [*x1, *y1], [*x0, *y1]], &[], size, min_angle)
+            let corners = [[*x0, *y0], [*x1, *y0], [*x1, *y1], [*x0, *y1]];
+            polygon_with_names(&corners, &["bottom", "right", "top", "left"], size, min_angle)
         }
         &Domain::LShape { half_width: a } => {
             let corners = [[0.0, 0.0], [0.0, -a], [-a, -a], [-a, a], [a, a], [a, 0.0]];
-            polygon(&corners, &[], size, min_angle)
+            let names = ["corner", "bottom", "left", "top", "right", "corner"];
+            polygon_with_names(&corners, &names, size, min_angle)
         }
         Domain::Disk { centre, radius } => {
             check_vertex_estimate((radius / size).powi(2))?;
@@ -132,7 +137,7 @@ fn unstructured(domain: &Domain, size: f64, min_angle: f64) -> Result<Mesh, Gene
                 let angle = std::f64::consts::TAU * k as f64 / edges as f64;
                 [centre[0] + radius * angle.cos(), centre[1] + radius * angle.sin()]
             };
-            polygon(&(0..edges).map(corner).collect::<Vec<_>>(), &[], size, min_angle)
+            polygon_with_names(&(0..edges).map(corner).collect::<Vec<_>>(), &["rim"], size, min_angle)
         }
         Domain::Polygon { vertices, holes } => polygon(vertices, holes, size, min_angle),
     }

@@ -1,5 +1,7 @@
 //! A checked mesh from a Gmsh file.
 
+mod named;
+
 use std::io;
 use std::path::Path;
 
@@ -8,6 +10,7 @@ use thiserror::Error;
 use super::{Mesh, MeshError};
 use crate::formats::gmsh::{GmshError, GmshTriangulation, PhysicalGroup, parse};
 use crate::formats::read_regular;
+use named::named_parts;
 
 /// Why a mesh file cannot be used. The messages do not repeat the file's name.
 #[derive(Debug, Error)]
@@ -34,7 +37,9 @@ pub enum ReadError {
 /// A mesh from a Gmsh file, and what the file calls its parts.
 #[derive(Debug, Clone)]
 pub struct GmshMesh {
-    /// The mesh, its vertices in the order of the file.
+    /// The mesh, its vertices in the order of the file. Its regions and curves are the physical groups of surfaces and curves;
+    /// those without a name are called as they are printed: `curves 2`, `surfaces 1`. Lines that are no edges of triangles
+    /// are left out of their curves, which may be left empty.
     pub mesh: Mesh,
     /// The number that Gmsh gave to each vertex. Shape: vertices.
     pub node_tags: Vec<u64>,
@@ -48,9 +53,12 @@ impl GmshMesh {
     /// # Errors
     /// [`ReadError::Mesh`]: no conforming triangulation.
     pub fn new(triangulation: GmshTriangulation) -> Result<Self, ReadError> {
-        let GmshTriangulation { points, triangles, node_tags, element_tags, groups } = triangulation;
+        let GmshTriangulation { points, triangles, node_tags, element_tags, groups, members } = triangulation;
         match Mesh::new(points, triangles) {
-            Ok(mesh) => Ok(Self { mesh, node_tags, groups }),
+            Ok(mesh) => {
+                let named = named_parts(&mesh, &groups, members);
+                Ok(Self { mesh: mesh.with_groups(named), node_tags, groups })
+            }
             Err(source) => Err(ReadError::Mesh {
                 elements: with_tags(&source.triangles(), &element_tags),
                 nodes: with_tags(&source.vertices(), &node_tags),
@@ -71,7 +79,7 @@ impl GmshMesh {
 
 impl Mesh {
     /// Reads a Gmsh mesh: MSH 2.0 to 2.2 or 4.1, ASCII or binary, or 4.0 in ASCII, from a regular file. Vertices keep the order
-    /// of the file. [`GmshMesh::read`] takes a limit, and also returns Gmsh's numbers and groups.
+    /// of the file, and its groups their names. [`GmshMesh::read`] takes a limit, and also returns Gmsh's numbers and groups.
     ///
     /// # Errors
     /// [`ReadError`]: unreadable, not such a file, or no conforming triangulation.

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::ancestry::Parents;
+use super::groups::Groups;
 use crate::geometry::{distance_sq, twice_signed_area};
 
 /// Where a vertex lies.
@@ -25,6 +26,7 @@ pub struct Mesh {
     pub(super) triangles: Vec<[usize; 3]>,
     pub(super) kind: Vec<VertexKind>,
     pub(super) ancestry: Vec<Arc<Parents>>,
+    pub(super) groups: Groups,
 }
 
 impl Mesh {
@@ -41,6 +43,11 @@ impl Mesh {
     /// The kind of each vertex. Shape: `vertices`.
     pub fn kind(&self) -> &[VertexKind] {
         &self.kind
+    }
+
+    /// The named regions and curves. Refinements inherit them.
+    pub fn groups(&self) -> &Groups {
+        &self.groups
     }
 
     /// The corners of triangle `t`, counterclockwise.
@@ -96,6 +103,11 @@ impl Mesh {
         assert!(vertices.is_none_or(|vertices| vertices == self.points.len()), "parents of every vertex");
         self.ancestry = ancestry;
         self
+    }
+
+    /// The same mesh, its parts named by `groups` in place of what they were called.
+    pub(in crate::mesh) fn with_groups(self, groups: Groups) -> Self {
+        Self { groups, ..self }
     }
 
     /// The ancestry of a refinement of this mesh.

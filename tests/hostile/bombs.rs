@@ -111,7 +111,7 @@ fn gmsh_files() -> Vec<(&'static str, Vec<u8>)> {
     let text = |text: String| text.into_bytes();
     // As many as there are bytes left are accepted where each takes a byte at least.
     let zeros = vec![b'0'; LONG];
-    vec![
+    [
         ("2^63 nodes, 2.2", text(format!("{V2}$Nodes\n9223372036854775808\n1 0 0 0\n$EndNodes\n"))),
         (
             "2^63 nodes, 4.1",
@@ -165,6 +165,85 @@ fn gmsh_files() -> Vec<(&'static str, Vec<u8>)> {
         ("a fan", text(fan(20_000))),
         ("the same triangle", text(same_triangle(20_000))),
     ]
+    .into_iter()
+    .chain(grouped_meshes().into_iter().map(|(name, mesh)| (name, text(mesh))))
+    .collect()
+}
+
+/// Meshes with many physical groups, or many members of them.
+fn grouped_meshes() -> Vec<(&'static str, String)> {
+    const NODES: [&str; 2] =
+        ["3\n1 0 0 0\n2 1 0 0\n3 0 1 0\n", "1 3 1 3\n2 1 0 3\n1\n2\n3\n0 0 0\n1 0 0\n0 1 0\n"];
+    let v2 = |n: usize, elements: String| {
+        let nodes = NODES[0];
+        format!(
+            "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{nodes}$EndNodes\n$Elements\n{}\n{elements}1 2 0 1 2 3\n$EndElements\n",
+            n + 1
+        )
+    };
+    let v4 = |entities: String, n: usize, blocks: String| {
+        let nodes = NODES[1];
+        format!(
+            "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n{entities}$EndEntities\n$Nodes\n{nodes}$EndNodes\n$Elements\n{} 0 0 0\n{blocks}2 1 2 1\n1 1 2 3\n$EndElements\n",
+            n + 1
+        )
+    };
+    let list = |groups: std::ops::Range<usize>| groups.map(|k| format!("{k} ")).collect::<String>();
+    let n = LONG / 16;
+    // So many lines lie in pairs of so many curves, each in so many groups.
+    let (curves, groups) = (200, 500);
+    let pairs = (0..curves).flat_map(|j| (0..j).map(move |k| [j, k]));
+    let pairs: Vec<[usize; 2]> = pairs.collect();
+    let in_both =
+        pairs.iter().map(|[j, k]| format!("1 {} 1 1\n1 1 2\n1 {} 1 1\n1 1 2\n", j + 1, k + 1)).collect();
+    let all = list(1..groups + 1);
+    let curve = |k: usize| format!("{k} 0 0 0 0 0 0 {groups} {all}0\n");
+    vec![
+        ("a group for each line", v2(n, (1..=n).map(|k| format!("1 1 1 {k} 1 2\n")).collect())),
+        ("a triangle in many groups", v2(n, (1..=n).map(|k| format!("1 2 1 {k} 1 2 3\n")).collect())),
+        ("a line in one group again and again", v2(n, "1 1 1 1 1 2\n".repeat(n))),
+        (
+            "many groups of a surface",
+            v4(format!("0 0 1 0\n1 0 0 0 0 0 0 {n} {}0\n", list(1..n + 1)), 0, String::new()),
+        ),
+        (
+            "a line in many curves of many groups",
+            v4(
+                format!("0 {curves} 0 0\n{}", (1..=curves).map(curve).collect::<String>()),
+                2 * pairs.len(),
+                in_both,
+            ),
+        ),
+        (
+            "curves of one line, which has a node that is not there",
+            v4("0 0 0 0\n".into(), n, (1..=n).map(|k| format!("1 {} 1 1\n1 9 9\n", k % 2)).collect()),
+        ),
+        ("a thousand groups of a thousand triangles and edges", thousands(1000)),
+    ]
+}
+
+/// A fan of `n` triangles in `n` groups, its boundary in as many.
+fn thousands(n: usize) -> String {
+    let groups: String = (1..=n).map(|k| format!("{k} ")).collect();
+    let names: String =
+        [1, 2].iter().flat_map(|d| (1..=n).map(move |k| format!("{d} {k} \"group {k}\"\n"))).collect();
+    let mut text = format!(
+        "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n{}\n{names}$EndPhysicalNames\n$Entities\n0 1 1 0\n1 0 0 0 0 0 0 {n} {groups}0\n1 0 0 0 0 0 0 {n} {groups}0\n$EndEntities\n$Nodes\n1 {} 1 {}\n2 1 0 {}\n",
+        2 * n,
+        n + 1,
+        n + 1,
+        n + 1
+    );
+    (1..=n + 1).for_each(|k| text += &format!("{k}\n"));
+    for k in 0..n {
+        let angle = std::f64::consts::TAU * k as f64 / n as f64;
+        text += &format!("{} {} 0\n", angle.cos(), angle.sin());
+    }
+    text += &format!("0 0 0\n$EndNodes\n$Elements\n2 {} 1 {}\n1 1 1 {n}\n", 2 * n, 2 * n);
+    (0..n).for_each(|k| text += &format!("{} {} {}\n", k + 1, k + 1, (k + 1) % n + 1));
+    text += &format!("2 1 2 {n}\n");
+    (0..n).for_each(|k| text += &format!("{} {} {} {}\n", n + k + 1, n + 1, k + 1, (k + 1) % n + 1));
+    text + "$EndElements\n"
 }
 
 /// Names of one letter, each of a group of its own.

@@ -1,4 +1,5 @@
-//! The elements of a Gmsh file: triangles are kept, points and lines are counted, all others are refused.
+//! The elements of a Gmsh file: triangles are kept, and lines that may belong to a physical group; points are counted, all
+//! others are refused.
 
 use super::error::GmshError;
 use super::nodes::Nodes;
@@ -62,6 +63,29 @@ pub(super) struct Elements {
     pub(super) tags: Vec<u64>,
     /// Number of points and lines.
     pub(super) others: usize,
+    /// Triangles with their labels, in increasing order; one may have several labels, or none.
+    pub(super) labels: Vec<(u32, Label)>,
+    /// The nodes of the lines that have a label.
+    pub(super) lines: Vec<([u32; 2], Label)>,
+    /// Lines with a label and a node that is not there.
+    pub(super) strays: Vec<Stray>,
+}
+
+/// What tells the groups of an element: the group itself in MSH 2, the entity of the geometry in MSH 4.
+pub(super) type Label = u32;
+
+/// A line with a node that is not there: an error where it belongs to a group, which the end of the file may tell.
+pub(super) struct Stray {
+    pub(super) label: Label,
+    /// Index of a byte of the line.
+    pub(super) at: usize,
+    pub(super) element: u64,
+    pub(super) node: u64,
+}
+
+/// Nodes and triangles are counted in 32 bits: more would take a file of tens of gigabytes.
+fn number(n: usize) -> u32 {
+    u32::try_from(n).expect("a file has less than 2^32 nodes and triangles")
 }
 
 impl Elements {
@@ -77,6 +101,7 @@ impl Elements {
         for (index, node) in triangle.iter_mut().zip(vertices) {
             *index = nodes.index(node).ok_or_else(|| GmshError::UnknownNode {
                 place: scanner.place(),
+                shape: "triangle",
                 element,
                 node,
             })?;
@@ -84,5 +109,26 @@ impl Elements {
         self.triangles.push(triangle);
         self.tags.push(element);
         Ok(())
+    }
+
+    /// The triangle that was appended last has this label.
+    pub(super) fn label_triangle(&mut self, label: Label) {
+        self.labels.push((number(self.triangles.len() - 1), label));
+    }
+
+    /// Appends the line whose ends have the tags `ends`.
+    pub(super) fn add_line(
+        &mut self,
+        scanner: &Scanner,
+        nodes: &Nodes,
+        element: u64,
+        ends: [u64; 2],
+        label: Label,
+    ) {
+        let stray = |node| Stray { label, at: scanner.index(), element, node };
+        match ends.map(|node| nodes.index(node).ok_or(node)) {
+            [Ok(a), Ok(b)] => self.lines.push(([number(a), number(b)], label)),
+            [Err(node), _] | [_, Err(node)] => self.strays.push(stray(node)),
+        }
     }
 }

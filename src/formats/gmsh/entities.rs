@@ -51,7 +51,7 @@ impl Reader<'_, '_> {
     /// `tag box number-of-groups groups`, but for a point `number-of-boundary-entities boundary-entities`; for a part,
     /// `dimension tag number-of-partitions partitions` behind its tag.
     fn entity(&mut self, dimension: u8) -> Result<(), GmshError> {
-        read_int(self.scanner, "the tag of an entity")?;
+        let entity = read_int(self.scanner, "the tag of an entity")?;
         if self.partitioned {
             read_int(self.scanner, "the dimension of a parent")?;
             read_int(self.scanner, "the tag of a parent")?;
@@ -65,9 +65,7 @@ impl Reader<'_, '_> {
         }
         let mut tags = Vec::new();
         self.list("physical groups of an entity", |tag| tags.push(tag))?;
-        for tag in tags {
-            self.groups.add(dimension, tag);
-        }
+        self.groups.add_entity(dimension, entity, &tags);
         if dimension > 0 {
             self.list("entities at the boundary of one", |_| {})?;
         }

@@ -134,15 +134,17 @@ pub enum GmshError {
         /// Number of the second one.
         second: usize,
     },
-    /// A triangle with a vertex that is not in `$Nodes`.
+    /// A triangle, or a line of a physical group, with a vertex that is not in `$Nodes`.
     #[error(
-        "{place}, $Elements: triangle {element} names the node {node}, which is not in $Nodes; \
+        "{place}, $Elements: {shape} {element} names the node {node}, which is not in $Nodes; \
          write the file again with Gmsh"
     )]
     UnknownNode {
         /// Where.
         place: Place,
-        /// Tag of the triangle.
+        /// What it is.
+        shape: &'static str,
+        /// Its tag.
         element: u64,
         /// Tag of the node.
         node: u64,

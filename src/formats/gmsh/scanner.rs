@@ -49,7 +49,12 @@ impl<'a> Scanner<'a> {
         self.place_of(self.at)
     }
 
-    fn place_of(&self, index: usize) -> Place {
+    /// The current position, to be made a [`Place`] when it is needed: that takes time.
+    pub(super) fn index(&self) -> usize {
+        self.at
+    }
+
+    pub(super) fn place_of(&self, index: usize) -> Place {
         match self.encoding {
             Encoding::Ascii => Place::Line(1 + self.bytes[..index].iter().filter(|&&b| b == b'\n').count()),
             Encoding::Binary(_) => Place::Byte(index),

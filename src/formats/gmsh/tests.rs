@@ -57,6 +57,11 @@ const VALID: &[Valid] = &[
     valid!("two_groups_22_ascii", 15, 18, RECTANGLE, 1),
     valid!("two_groups_22_binary", 15, 18, RECTANGLE, 1),
     valid!("two_groups_41", 15, 18, RECTANGLE, 1),
+    valid!("materials_22_ascii", 14, 16, 1.6, 1),
+    valid!("materials_22_binary", 14, 16, 1.6, 1),
+    valid!("materials_40", 14, 16, 1.6, 1),
+    valid!("materials_41_ascii", 14, 16, 1.6, 1),
+    valid!("materials_41_binary", 14, 16, 1.6, 1),
     valid!("two_surfaces_41", 30, 36, 2.0 * RECTANGLE, 2),
     valid!("hole_41", 30, 40, RECTANGLE - 0.4 * 0.2, 0),
     valid!("height_41", 15, 18, RECTANGLE, 1),
@@ -175,12 +180,15 @@ fn groups(bytes: &[u8]) -> Vec<String> {
 #[test]
 fn groups_have_their_names_in_every_encoding() {
     let of_rectangle = ["0 3 gauge", "1 2 clamped edge", "1 4 stiffener", "2 1 membrane"];
+    let of_materials =
+        ["1 4 clamped", "1 5 free", "1 6 top", "1 7 curves 7", "2 1 rubber", "2 2 steel", "2 3 all of it"];
     let of_two = ["1 2 clamped edge", "2 1 membrane", "2 3 steel"];
     for file in VALID {
         let found = groups(file.bytes);
         match file.name {
             name if name.starts_with("rectangle") || name == "version_40" => assert_eq!(found, of_rectangle),
             name if name.starts_with("two_groups") => assert_eq!(found, of_two),
+            name if name.starts_with("materials") => assert_eq!(found, of_materials),
             name if name.starts_with("partitioned") => assert_eq!(found, of_two[..2], "{name}"),
             name if name.starts_with("no_groups") || name.starts_with("sparse") => assert!(found.is_empty()),
             _ => {}

@@ -55,6 +55,7 @@ pub(super) fn elements(
             }
         }
     }
+    reader.groups.label_elements();
     Ok(reader.elements)
 }
 
@@ -110,24 +111,35 @@ impl Reader<'_, '_> {
         self.scanner.count(declared, "labels of an element")
     }
 
-    /// Takes the first label, the physical group, skips the others (surface, partitions) and takes the nodes.
+    /// Takes the first label, the physical group (0 is none, and the sign tells an orientation), skips the others (surface,
+    /// partitions) and takes the nodes.
     fn labels_and_nodes(&mut self, element: u64, kind: Kind, labels: usize) -> Result<(), GmshError> {
+        let mut group = 0;
         for label in 0..labels {
             let value = self.scanner.int("a label of an element")?;
             if label == 0 {
                 self.groups.add(kind.dimension(), value);
+                group = value.unsigned_abs();
             }
         }
         let mut vertices = [0; 3];
         for vertex in &mut vertices[..kind.nodes()] {
             *vertex = read_tag(self.scanner, "the node tag of an element")?;
         }
-        if kind != Kind::Triangle {
-            self.elements.others += 1;
+        if kind == Kind::Triangle {
+            self.elements.add(self.scanner, self.nodes, element, vertices)?;
+            self.drop_repetition();
+            if group != 0 {
+                self.elements.label_triangle(group);
+            }
             return Ok(());
         }
-        self.elements.add(self.scanner, self.nodes, element, vertices)?;
-        self.drop_repetition();
+        self.elements.others += 1;
+        if let (Kind::Line, [a, b, _]) = (kind, vertices)
+            && group != 0
+        {
+            self.elements.add_line(self.scanner, self.nodes, element, [a, b], group);
+        }
         Ok(())
     }
 

@@ -1,6 +1,6 @@
 //! `$Nodes` and `$Elements` of MSH 4, one block for each entity of the geometry.
 
-use super::elements::{Elements, Kind};
+use super::elements::{Elements, Kind, Label};
 use super::error::GmshError;
 use super::nodes::{Nodes, read_point};
 use super::scanner::Scanner;
@@ -18,7 +18,7 @@ pub(super) enum Layout {
 pub(super) fn nodes(scanner: &mut Scanner, layout: Layout) -> Result<Nodes, GmshError> {
     let (mut tags, mut points, mut heights) = (Vec::new(), Vec::new(), Vec::new());
     for _ in 0..read_head(scanner, layout)? {
-        let dimension = read_entity(scanner, layout)?;
+        let (dimension, _) = read_entity(scanner, layout)?;
         let parametric = scanner.int("0, or 1 for nodes with parameters")?;
         let parameters = match (parametric, dimension) {
             (0, _) => 0,
@@ -55,8 +55,10 @@ pub(super) fn nodes(scanner: &mut Scanner, layout: Layout) -> Result<Nodes, Gmsh
 pub(super) fn elements(scanner: &mut Scanner, layout: Layout, nodes: &Nodes) -> Result<Elements, GmshError> {
     let mut elements = Elements::default();
     for _ in 0..read_head(scanner, layout)? {
-        read_entity(scanner, layout)?;
+        let (dimension, entity) = read_entity(scanner, layout)?;
         let kind = Kind::read(scanner)?;
+        // Groups have members of their own dimension.
+        let label = (dimension == i32::from(kind.dimension())).then_some(entity as Label);
         let length = read_count(scanner, "elements of a block")?;
         scanner.end_record()?;
         for _ in 0..length {
@@ -67,8 +69,12 @@ pub(super) fn elements(scanner: &mut Scanner, layout: Layout, nodes: &Nodes) -> 
             }
             if kind == Kind::Triangle {
                 elements.add(scanner, nodes, element, vertices)?;
+                label.into_iter().for_each(|label| elements.label_triangle(label));
             } else {
                 elements.others += 1;
+            }
+            if let (Kind::Line, Some(label), [a, b, _]) = (kind, label, vertices) {
+                elements.add_line(scanner, nodes, element, [a, b], label);
             }
             scanner.end_record()?;
         }
@@ -94,13 +100,11 @@ fn read_head(scanner: &mut Scanner, layout: Layout) -> Result<usize, GmshError> 
     Ok(blocks)
 }
 
-/// Reads which entity a block belongs to; its dimension.
-fn read_entity(scanner: &mut Scanner, layout: Layout) -> Result<i32, GmshError> {
+/// Reads which entity a block belongs to: its dimension and its tag.
+fn read_entity(scanner: &mut Scanner, layout: Layout) -> Result<(i32, i32), GmshError> {
     if layout == Layout::V40 {
-        scanner.int("the tag of an entity")?;
-        return scanner.int("the dimension of an entity");
+        let tag = scanner.int("the tag of an entity")?;
+        return Ok((scanner.int("the dimension of an entity")?, tag));
     }
-    let dimension = scanner.int("the dimension of an entity")?;
-    scanner.int("the tag of an entity")?;
-    Ok(dimension)
+    Ok((scanner.int("the dimension of an entity")?, scanner.int("the tag of an entity")?))
 }

@@ -1,12 +1,15 @@
 //! Unstructured meshes of polygons with holes, by Delaunay refinement (Ruppert's algorithm, in the crate `spade`).
 
+mod rings;
+
 use std::collections::HashSet;
 
 use spade::{AngleLimit, ConstrainedDelaunayTriangulation, Point2, RefinementParameters, Triangulation};
 
 use super::error::{GenerateError, MAX_MIN_ANGLE, check_vertex_estimate};
 use crate::geometry::ring_area;
-use crate::mesh::Mesh;
+use crate::mesh::{Groups, Mesh};
+use rings::{SideEdge, edges_of_sides};
 
 /// So many vertices may always be added: a coarse mesh need not be as coarse as `size` allows.
 const LEEWAY: usize = 10_000;
@@ -18,7 +21,9 @@ const AREA_TOLERANCE: f64 = 1e-9;
 /// The polygon `vertices` without the polygons `holes`, in triangles with edges of about `size` and angles of at least
 /// `min_angle` degrees (but for smaller angles of the polygon itself). Deterministic.
 ///
-/// Each ring is given in either orientation; its last vertex may repeat the first, as in GeoJSON.
+/// Each ring is given in either orientation; its last vertex may repeat the first, as in GeoJSON. The outer ring is the curve
+/// `outer`; its sides, from each vertex to the next one, are `side 1`, `side 2` ...; the rings of the holes are `hole 1`,
+/// `hole 2` ...
 ///
 /// # Errors
 /// [`GenerateError`] for a `size` that is not positive or makes too many triangles, a `min_angle` outside of `0..=30`,
@@ -30,6 +35,47 @@ pub fn polygon(
     size: f64,
     min_angle: f64,
 ) -> Result<Mesh, GenerateError> {
+    let (mesh, edges) = with_sides(vertices, holes, size, min_angle)?;
+    let sides = open_ring(vertices).len();
+    let numbered = |what: &'static str, n: usize| (1..=n).map(move |k| format!("{what} {k}"));
+    let names =
+        std::iter::once("outer".into()).chain(numbered("side", sides)).chain(numbered("hole", holes.len()));
+    // A side belongs to two curves: the first one, and its own. Rings of holes are numbered from 1.
+    let parts =
+        (0..sides + holes.len()).map(|part| if part < sides { vec![0, part + 1] } else { vec![part + 1] });
+    let part = |edge: &SideEdge| if edge.ring == 0 { edge.side } else { sides + edge.ring - 1 };
+    let members = edges.iter().map(|edge| (edge.ends, part(edge)));
+    Ok(mesh.with_groups(Groups::of_overlapping_curves(names.collect(), parts, members)))
+}
+
+/// The mesh of [`polygon`] without holes, with other names: the side from corner `k` to the next one belongs to the curve
+/// `name_of_side[k]`, or all of them to the only one.
+pub(super) fn polygon_with_names(
+    vertices: &[[f64; 2]],
+    name_of_side: &[&str],
+    size: f64,
+    min_angle: f64,
+) -> Result<Mesh, GenerateError> {
+    let (mesh, edges) = with_sides(vertices, &[], size, min_angle)?;
+    let mut names: Vec<&str> = Vec::new();
+    for name in name_of_side {
+        if !names.contains(name) {
+            names.push(name);
+        }
+    }
+    let of_side = |side: usize| name_of_side[side % name_of_side.len()];
+    let curve =
+        |name| (name, edges.iter().filter(|edge| of_side(edge.side) == name).map(|edge| edge.ends).collect());
+    Ok(mesh.with_groups(Groups::of_curves(names.into_iter().map(curve))))
+}
+
+/// A mesh without names, and which edge of its boundary is on which side of which ring.
+fn with_sides(
+    vertices: &[[f64; 2]],
+    holes: &[Vec<[f64; 2]>],
+    size: f64,
+    min_angle: f64,
+) -> Result<(Mesh, Vec<SideEdge>), GenerateError> {
     if !(size > 0.0 && size.is_finite()) {
         return Err(GenerateError::Size { size });
     }
@@ -78,7 +124,10 @@ pub fn polygon(
     if !((mesh.area() - area).abs() <= AREA_TOLERANCE * area) {
         return Err(GenerateError::Holes);
     }
-    Ok(mesh)
+    // The corners come first in the triangulation, in the order in which they were given.
+    let rings = std::iter::once(vertices).chain(holes.iter().copied());
+    let edges = edges_of_sides(&mesh, rings, &number[..boundary]).ok_or(GenerateError::Holes)?;
+    Ok((mesh, edges))
 }
 
 /// The area of an equilateral triangle of this edge length.

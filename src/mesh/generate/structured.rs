@@ -3,14 +3,16 @@
 mod ancestry;
 mod numbering;
 mod pattern;
+mod sides;
 
-use crate::mesh::{Mesh, MeshError};
+use crate::mesh::{Groups, Mesh, MeshError};
 use ancestry::{ancestry, disk_ancestry};
 use numbering::GridNumbering;
 pub use pattern::Pattern;
+use sides::{re_entrant_sides, sides_of_box};
 
 /// The rectangle `(lower, upper)` in `cells[0] x cells[1]` cells. Vertices run along `x` first; the cell centres of the
-/// crossed pattern follow.
+/// crossed pattern follow. Its sides are the curves `left`, `right`, `bottom`, `top`.
 ///
 /// # Errors
 /// When rounding makes vertices coincide: extreme coordinates, or cells that are tiny for their distance from the origin.
@@ -23,10 +25,11 @@ pub fn rectangle(
     cells: [usize; 2],
     pattern: Pattern,
 ) -> Result<Mesh, MeshError> {
-    grid(lower, upper, cells, pattern, |_, _| true)
+    grid(lower, upper, cells, pattern, |_, _| true, |numbering| Groups::of_curves(sides_of_box(numbering)))
 }
 
-/// The L-shape `(-a, a)^2` without `[0, a] x [-a, 0]`, `cells` cells along its half width `a`.
+/// The L-shape `(-a, a)^2` without `[0, a] x [-a, 0]`, `cells` cells along its half width `a`. Its sides are the curves
+/// `left`, `right`, `bottom`, `top`, and `corner`: the two that meet at the re-entrant corner.
 ///
 /// # Errors
 /// As [`rectangle`].
@@ -35,16 +38,21 @@ pub fn rectangle(
 /// When `half_width` is not positive or `cells` is zero.
 pub fn l_shape(half_width: f64, cells: usize, pattern: Pattern) -> Result<Mesh, MeshError> {
     let corner = [half_width; 2];
-    grid(corner.map(|a| -a), corner, [2 * cells; 2], pattern, |i, j| i < cells || j >= cells)
+    let curves = |numbering: &GridNumbering| {
+        let corner = ("corner", re_entrant_sides(numbering, cells));
+        Groups::of_curves(sides_of_box(numbering).into_iter().chain([corner]))
+    };
+    grid(corner.map(|a| -a), corner, [2 * cells; 2], pattern, |i, j| i < cells || j >= cells, curves)
 }
 
-/// The cells `(i, j)` of a grid that belong to the domain, divided by the pattern.
+/// The cells `(i, j)` of a grid that belong to the domain, divided by the pattern, and the names of its sides.
 fn grid(
     lower: [f64; 2],
     upper: [f64; 2],
     [nx, ny]: [usize; 2],
     pattern: Pattern,
     inside: impl Fn(usize, usize) -> bool,
+    groups: impl FnOnce(&GridNumbering) -> Groups,
 ) -> Result<Mesh, MeshError> {
     assert!(nx > 0 && ny > 0 && lower[0] < upper[0] && lower[1] < upper[1], "an empty grid");
     // Ends are met exactly, and a dyadic grid on the unit square has exact coordinates.
@@ -71,12 +79,13 @@ fn grid(
             }
         }
     }
+    let groups = groups(&numbering);
     let ancestry = ancestry(numbering, pattern, &inside);
-    Ok(Mesh::new(points, triangles)?.with_ancestry(ancestry))
+    Ok(Mesh::new(points, triangles)?.with_ancestry(ancestry).with_groups(groups))
 }
 
 /// A disk, as `rings` rings of triangles around its centre; ring `k` has `6 k` vertices. The domain of the mesh is the
-/// polygon inscribed in the disk.
+/// polygon inscribed in the disk, its boundary the curve `rim`.
 ///
 /// # Errors
 /// As [`rectangle`].
@@ -106,7 +115,10 @@ pub fn disk(centre: [f64; 2], radius: f64, rings: usize) -> Result<Mesh, MeshErr
             }
         }
     }
-    Ok(Mesh::new(points, triangles)?.with_ancestry(disk_ancestry(rings)))
+    let on_rim = |k: usize| first(rings) + k % (6 * rings);
+    let rim = (0..6 * rings).map(|k| [on_rim(k), on_rim(k + 1)]).collect();
+    let groups = Groups::of_curves([("rim", rim)]);
+    Ok(Mesh::new(points, triangles)?.with_ancestry(disk_ancestry(rings)).with_groups(groups))
 }
 
 #[cfg(test)]

@@ -78,7 +78,7 @@ impl Bisection {
     /// `marked` are numbers of triangles of the current mesh, in any order; one may be there more than once. Returns the
     /// parents of the new vertices: the ends of the edge whose midpoint each is (moved to the circle, on the boundary of a
     /// disk), see [`Refinement`](crate::mesh::Refinement). Shape: new vertices x 2. Old vertices keep their numbers, and children
-    /// take the place of their parent among the triangles. The ancestry of the mesh grows by one level. If nothing is marked,
+    /// take the place of their parent among the triangles; they, and halves of edges, are called like their parents. The ancestry of the mesh grows by one level. If nothing is marked,
     /// the mesh stays as it is, each triangle its own origin.
     ///
     /// # Errors
@@ -109,7 +109,13 @@ impl Bisection {
             }
         }
         let ancestry = self.mesh.ancestry_of_refinement(&parents);
-        let mesh = Mesh { points, triangles, kind, ancestry };
+        let mut child = 0;
+        let children = |t: usize| {
+            child += origin[child..].iter().take_while(|&&parent| parent < t).count();
+            child..child + origin[child..].iter().take_while(|&&parent| parent == t).count()
+        };
+        let groups = self.mesh.groups.inherited(children, self.mesh.points.len(), &parents);
+        let mesh = Mesh { points, triangles, kind, ancestry, groups };
         // On a polygon the new mesh covers exactly what the old one did; a moved boundary may meet another one.
         self.mesh = Arc::new(if self.circle.is_some() { mesh.checked()? } else { mesh });
         self.refinement_edge = refinement_edge;

@@ -35,6 +35,6 @@ impl Mesh {
     /// # Errors
     /// As [`Mesh::new`].
     pub(in crate::mesh) fn checked(self) -> Result<Self, MeshError> {
-        Ok(Self::new(self.points, self.triangles)?.with_ancestry(self.ancestry))
+        Ok(Self::new(self.points, self.triangles)?.with_ancestry(self.ancestry).with_groups(self.groups))
     }
 }

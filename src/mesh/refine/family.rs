@@ -21,7 +21,7 @@ enum Shape {
     /// A circle.
     Disk(Circle),
     /// A grading towards a point, laid over a mesh that is refined uniformly: see [`Mesh::graded`].
-    Graded { uniform: Mesh, point: [f64; 2], exponent: f64 },
+    Graded { uniform: Box<Mesh>, point: [f64; 2], exponent: f64 },
 }
 
 impl MeshFamily {
@@ -42,7 +42,7 @@ impl MeshFamily {
     /// As [`Mesh::graded`].
     pub fn graded(uniform: Mesh, point: [f64; 2], exponent: f64) -> Result<Self, MeshError> {
         let mesh = Arc::new(uniform.graded(point, exponent)?);
-        Ok(Self { mesh, shape: Shape::Graded { uniform, point, exponent } })
+        Ok(Self { mesh, shape: Shape::Graded { uniform: Box::new(uniform), point, exponent } })
     }
 
     /// The current mesh.
@@ -69,7 +69,7 @@ impl MeshFamily {
             Shape::Graded { uniform, point, exponent } => {
                 let Refinement { mesh, parents } = uniform.refine()?;
                 let graded = mesh.graded(*point, *exponent)?;
-                *uniform = mesh;
+                **uniform = mesh;
                 (parents, graded)
             }
         };

@@ -37,7 +37,7 @@ impl Mesh {
         let graded = Self::new(points, self.triangles.clone())?;
         let same_area = (graded.area() - self.area()).abs() <= AREA_TOLERANCE * self.area();
         if same_area && graded.triangles == self.triangles {
-            Ok(graded.with_ancestry(self.ancestry.clone()))
+            Ok(graded.with_ancestry(self.ancestry.clone()).with_groups(self.groups.clone()))
         } else {
             Err(MeshError::NotGraded { exponent })
         }

@@ -15,7 +15,7 @@ pub struct Refinement {
 }
 
 impl Mesh {
-    /// Divides every triangle into four similar ones. Linear time.
+    /// Divides every triangle into four similar ones. Children and halves of edges are called like their parents. Linear time.
     ///
     /// Curved boundaries are not followed: the domain stays the polygon that the coarse mesh covers.
     ///
@@ -36,7 +36,8 @@ impl Mesh {
             .flat_map(|(&[a, b, c], &[ab, bc, ca])| [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]])
             .collect();
         let ancestry = self.ancestry_of_refinement(&midpoints.ends);
-        let mesh = Mesh { points, triangles, kind, ancestry };
+        let groups = self.groups.inherited(|t| 4 * t..4 * t + 4, self.points.len(), &midpoints.ends);
+        let mesh = Mesh { points, triangles, kind, ancestry, groups };
         self.check_parts(&mesh)?;
         Ok(Refinement { mesh, parents: midpoints.ends })
     }

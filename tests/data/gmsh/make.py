@@ -1,4 +1,4 @@
-"""Writes the meshes of this folder with the real Gmsh (pip install gmsh==4.15.2), for the tests of src/mesh/gmsh.
+"""Writes the meshes of this folder with the real Gmsh (pip install gmsh==4.15.2), for the tests of src/formats/gmsh.
 
 Every run gives the same bytes, but for the order of $GhostElements.
 """
@@ -108,6 +108,29 @@ def group_cases():
     write("only_curves_22", MSH22)
 
 
+def materials():
+    """Two materials with a common side, groups that overlap, one without a name."""
+    new_model()
+    left, left_curves = rectangle(size=0.8, width=1.0)
+    right, right_curves = rectangle(size=0.8, x=1.0, width=1.0)
+    gmsh.model.geo.removeAllDuplicates()
+    gmsh.model.geo.synchronize()
+    # The right surface now has the right side of the left one as its left side.
+    seam = left_curves[1]
+    gmsh.model.addPhysicalGroup(2, [left], name="rubber")
+    gmsh.model.addPhysicalGroup(2, [right], name="steel")
+    gmsh.model.addPhysicalGroup(2, [left, right], name="all of it")
+    gmsh.model.addPhysicalGroup(1, [left_curves[0], left_curves[2], left_curves[3]], name="clamped")
+    gmsh.model.addPhysicalGroup(1, [right_curves[1], right_curves[2]], name="free")
+    gmsh.model.addPhysicalGroup(1, [left_curves[2], right_curves[2]], name="top")
+    gmsh.model.addPhysicalGroup(1, [seam])
+    gmsh.model.mesh.generate(2)
+    for version, digits in ((MSH22, "22"), (MSH41, "41")):
+        for binary, encoding in ((False, "ascii"), (True, "binary")):
+            write(f"materials_{digits}_{encoding}", version, binary)
+    write("materials_40", MSH40)
+
+
 def shapes():
     """Two separate surfaces, a surface with a hole, a periodic one with a view behind it, one at a height."""
     new_model()
@@ -207,6 +230,7 @@ def main():
     encodings()
     sparse()
     group_cases()
+    materials()
     shapes()
     periodic_with_view()
     parametric()

@@ -1,7 +1,7 @@
 //! Small files written here: what Gmsh allows but does not write by itself, and errors one at a time.
 
 use super::super::scanner::ByteOrder;
-use super::super::{FLATNESS, GmshTriangulation, nodes::Nodes};
+use super::super::{FLATNESS, GmshTriangulation, GroupMembers, nodes::Nodes};
 use super::{read, refused};
 
 /// A point, a line and a triangle in MSH 4.1.
@@ -26,6 +26,7 @@ fn triangle() -> GmshTriangulation {
         node_tags: vec![1, 20, 30, 40],
         element_tags: vec![3],
         groups: vec![],
+        members: GroupMembers::default(),
     }
 }
 

@@ -1,0 +1,98 @@
+//! Names for parts of a mesh, by where they lie.
+
+use thiserror::Error;
+
+use super::Mesh;
+use super::topology::boundary_edges;
+use crate::text::excerpt;
+
+/// Why a part of a mesh cannot be called like this.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum GroupError {
+    /// There is a region of this name.
+    #[error("there is a region `{}` already: choose another name", excerpt(name))]
+    RegionTaken {
+        /// The name.
+        name: String,
+    },
+    /// There is a curve of this name.
+    #[error("there is a curve `{}` already: choose another name", excerpt(name))]
+    CurveTaken {
+        /// The name.
+        name: String,
+    },
+    /// A region without a triangle.
+    #[error(
+        "no triangle has its barycentre in the region `{}`: refine the mesh, or make the region larger",
+        excerpt(name)
+    )]
+    EmptyRegion {
+        /// The name.
+        name: String,
+    },
+    /// A curve without an edge.
+    #[error(
+        "no edge of the boundary lies on the curve `{}` with both ends and its midpoint: allow for rounding, as in `x.abs() < 1e-9`, or refine the mesh",
+        excerpt(name)
+    )]
+    EmptyCurve {
+        /// The name.
+        name: String,
+    },
+}
+
+impl Mesh {
+    /// The same mesh, in which the triangles whose barycentres are `inside` are the region `name`. Linear time.
+    ///
+    /// It may overlap with others. See [`Groups`](super::Groups).
+    ///
+    /// # Errors
+    /// [`GroupError`] when another region is called like it, or when there is no such triangle.
+    pub fn with_region(
+        mut self,
+        name: impl Into<String>,
+        inside: impl Fn([f64; 2]) -> bool,
+    ) -> Result<Self, GroupError> {
+        let name = name.into();
+        if self.groups.regions().contains(&name) {
+            return Err(GroupError::RegionTaken { name });
+        }
+        let barycentre = |t: usize| {
+            let [a, b, c] = self.corners(t);
+            [0, 1].map(|axis| (a[axis] + b[axis] + c[axis]) / 3.0)
+        };
+        let triangles: Vec<usize> = (0..self.triangles.len()).filter(|&t| inside(barycentre(t))).collect();
+        if triangles.is_empty() {
+            return Err(GroupError::EmptyRegion { name });
+        }
+        self.groups = std::mem::take(&mut self.groups).with_region(name, triangles);
+        Ok(self)
+    }
+
+    /// The same mesh, in which the edges of the boundary that lie `on` a line with both ends and their midpoints are the
+    /// curve `name`. Linear time.
+    ///
+    /// It may overlap with others, as with the sides that the generators name. Coordinates are rounded, and edges are
+    /// straight: `on` has to allow for that. See [`Groups`](super::Groups).
+    ///
+    /// # Errors
+    /// [`GroupError`] when another curve is called like it, or when there is no such edge.
+    pub fn with_curve(
+        mut self,
+        name: impl Into<String>,
+        on: impl Fn([f64; 2]) -> bool,
+    ) -> Result<Self, GroupError> {
+        let name = name.into();
+        if self.groups.curves().contains(&name) {
+            return Err(GroupError::CurveTaken { name });
+        }
+        let is_on = |ends: &[usize; 2]| ends.iter().all(|&a| on(self.points[a])) && on(self.midpoint(*ends));
+        let edges: Vec<[usize; 2]> = boundary_edges(&self).into_iter().filter(is_on).collect();
+        if edges.is_empty() {
+            return Err(GroupError::EmptyCurve { name });
+        }
+        self.groups = std::mem::take(&mut self.groups).with_curve(name, edges);
+        Ok(self)
+    }
+}
