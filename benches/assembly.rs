@@ -13,7 +13,9 @@ fn assembly(criterion: &mut Criterion) {
         let mesh = common::mesh(cells);
         let id = |part: &str| BenchmarkId::new(part, cells);
         group.bench_function(id("stiffness"), |bencher| bencher.iter(|| stiffness(&mesh)));
-        group.bench_function(id("load"), |bencher| bencher.iter(|| load(&mesh, &problem.load()[1])));
+        group.bench_function(id("load"), |bencher| {
+            bencher.iter(|| load(&mesh, &problem.as_pair().expect("a pair").load()[1]))
+        });
         group.bench_function(id("discretization"), |bencher| {
             bencher.iter(|| common::discretize(&mesh));
         });

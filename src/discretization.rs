@@ -10,7 +10,7 @@ use crate::mesh::{Mesh, VertexKind, VertexTriangles};
 use crate::numeric::largest;
 use crate::parallel::BLOCK;
 use crate::parallel::prelude::*;
-use crate::problem::{ContactProblem, EvaluationError};
+use crate::problem::{ContactProblem, EvaluationError, Pair};
 use crate::text::Number;
 
 /// Tensions, displacements and loads must lie between the inverse of this and this: energies must not overflow.
@@ -66,19 +66,20 @@ impl Discretization {
     /// Assembles the discrete problem. Linear time and memory.
     ///
     /// # Errors
-    /// [`DiscretizationError`] when a load is not finite at a quadrature point, the height is negative or not finite at a
+    /// [`DiscretizationError`] when the problem is not [the pair](ContactProblem::as_pair), a load is not finite at a quadrature point, the height is negative or not finite at a
     /// boundary vertex, or tensions, loads or displacements are so large or small that energies would overflow.
     pub fn new(problem: &ContactProblem, mesh: impl Into<Arc<Mesh>>) -> Result<Self, DiscretizationError> {
+        let pair = problem.as_pair().ok_or(DiscretizationError::NotThePair)?;
         let shared: Arc<Mesh> = mesh.into();
         let mesh = &*shared;
         let around = VertexTriangles::new(mesh.points().len(), mesh.triangles());
         let moments_of = |i: usize| {
-            LoadMoments::new(mesh, &problem.load()[i])
+            LoadMoments::new(mesh, &pair.load()[i])
                 .map_err(|source| DiscretizationError::Load { membrane: i + 1, source })
         };
         let moments = [moments_of(0)?, moments_of(1)?];
         let load = [0, 1].map(|i: usize| moments[i].vector(mesh, &around));
-        let height = boundary_height(problem, mesh)?;
+        let height = boundary_height(pair, mesh)?;
         let stiffness = stiffness_around(mesh, &around);
         // |D_a| = |Delta_a| / 3 (4.17)
         let dual_area = (0..mesh.points().len())
@@ -86,10 +87,10 @@ impl Discretization {
             .collect::<Vec<f64>>();
         let vertices = || 0..mesh.points().len();
         let interior: Vec<usize> = vertices().filter(|&a| mesh.kind()[a] == VertexKind::Interior).collect();
-        let scales = Scales::new(mesh, problem.tension(), &load, &height, &dual_area);
-        scales.check_range(problem.tension()).map_err(|error| not_seen(&moments, &load).unwrap_or(error))?;
+        let scales = Scales::new(mesh, pair.tension(), &load, &height, &dual_area);
+        scales.check_range(pair.tension()).map_err(|error| not_seen(&moments, &load).unwrap_or(error))?;
         Ok(Self {
-            tension: problem.tension(),
+            tension: pair.tension(),
             interior_stiffness: principal_submatrix(&stiffness, &interior),
             stiffness,
             load,
@@ -259,7 +260,7 @@ fn not_seen(moments: &[LoadMoments; 2], load: &[Vec<f64>; 2]) -> Option<Discreti
     (0..2).filter(|_| all_small).find(varies).map(|i| DiscretizationError::NotSeen { membrane: i + 1 })
 }
 
-fn boundary_height(problem: &ContactProblem, mesh: &Mesh) -> Result<Vec<f64>, DiscretizationError> {
+fn boundary_height(pair: &Pair, mesh: &Mesh) -> Result<Vec<f64>, DiscretizationError> {
     let is_boundary = |a: &usize| mesh.kind()[*a] == VertexKind::Boundary;
     let boundary: Vec<usize> = (0..mesh.points().len()).filter(is_boundary).collect();
     let [x, y] = [0, 1].map(|axis| boundary.iter().map(|&a| mesh.points()[a][axis]).collect::<Vec<f64>>());
@@ -269,7 +270,7 @@ fn boundary_height(problem: &ContactProblem, mesh: &Mesh) -> Result<Vec<f64>, Di
         point: mesh.points()[boundary[k]],
         value,
     };
-    problem.height().eval_many(&x, &y, &mut values).map_err(|error| match error {
+    pair.height().eval_many(&x, &y, &mut values).map_err(|error| match error {
         EvaluationError::NotFinite { point, value } => {
             let is_there = |k: &usize| [x[*k], y[*k]] == point;
             refused((0..boundary.len()).find(is_there).expect("one of the points"), value)
@@ -308,6 +309,9 @@ pub(crate) fn principal_submatrix(matrix: &CsMat<f64>, chosen: &[usize]) -> CsMa
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum DiscretizationError {
+    /// Another stack than the paper's pair.
+    #[error("the problem is not the paper's pair: take `StackDiscretization`")]
+    NotThePair,
     /// A load is not finite.
     #[error("load f{membrane} {source}: it must be finite on the whole domain")]
     Load {

@@ -1,4 +1,15 @@
-//! The continuous problem (1.1): two membranes, their loads, and the height at which the first is fixed.
+//! The continuous problem: a stack of membranes between obstacles, and the paper's pair (1.1).
+//!
+//! From the top, `u_0` the ceiling, `u_1 .. u_N` the membranes, `u_(N+1)` the floor; either obstacle may be missing. In every gap
+//! `k`, between layers `k` and `k + 1`, they push each other apart with the action `lambda_k`:
+//!
+//! ```text
+//! -div(mu_i grad u_i) + c_i u_i = f_i + lambda_i - lambda_(i-1)   in omega
+//! u_k - u_(k+1) >= 0,   lambda_k >= 0,   lambda_k (u_k - u_(k+1)) = 0
+//! u_i = g_i   or   mu_i d_n u_i = t_i   on each part of the boundary
+//! ```
+//!
+//! The paper's pair is `N = 2` without obstacles, with constant tensions, held at `g >= 0` and at 0 all around:
 //!
 //! ```text
 //! -mu1 Lap u1 - lambda = f1    in omega        u1 = g >= 0   on the boundary
@@ -9,55 +20,130 @@
 mod cases;
 mod domain;
 mod expression;
+mod field;
 mod function;
+mod membrane;
+mod pair;
 #[cfg(test)]
 pub(crate) mod samples;
+mod stack;
 
 pub use cases::{Case, CaseError, ExactSolution, Parameter, Range};
 pub use domain::Domain;
 pub use expression::{Expression, ExpressionError};
+pub use field::Field;
 pub use function::{EvaluationError, Function};
+pub use membrane::{Membrane, Support};
+pub use pair::{ContactProblemBuilder, Pair};
+pub use stack::StackBuilder;
 
 use thiserror::Error;
 
 use crate::text::Number;
 
-/// The data of (1.1): tensions, loads, boundary height. Valid once built, then immutable.
+/// Membranes from the top, and the obstacles above and below them. Valid once built, then immutable.
 ///
 /// ```
-/// use membrane_contact::problem::ContactProblem;
+/// use membrane_contact::problem::{ContactProblem, Membrane};
 ///
-/// let problem = ContactProblem::builder().tension(1.0, 3.0).load(-15.0, 10.0).height(0.1).build()?;
-/// assert_eq!(problem.tension(), [1.0, 3.0]);
+/// // The paper's pair.
+/// let pair = ContactProblem::pair([1.0, 3.0], [-15.0, 10.0], 0.1)?;
+/// assert_eq!(pair.as_pair().map(|pair| pair.tension()), Some([1.0, 3.0]));
+/// // A membrane over a floor.
+/// let sheet = Membrane::new(1.0).load(-10.0);
+/// let obstacle = ContactProblem::obstacle(sheet.clone(), -0.3)?;
+/// // Three membranes over it.
+/// let stack = ContactProblem::stack()
+///     .membrane(sheet.clone().height(0.2))
+///     .membrane(sheet.clone().height(0.1))
+///     .membrane(sheet)
+///     .floor(-0.3)
+///     .build()?;
+/// assert_eq!([&pair, &obstacle, &stack].map(|problem| problem.membranes().len()), [2, 1, 3]);
 /// # Ok::<(), membrane_contact::problem::ProblemError>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct ContactProblem {
-    tension: [f64; 2],
-    load: [Function; 2],
-    height: Function,
+    membranes: Vec<Membrane>,
+    ceiling: Option<Field>,
+    floor: Option<Field>,
+    /// The same as the paper's pair, where it is one.
+    pair: Option<Pair>,
 }
 
 impl ContactProblem {
-    /// Starts from unit tensions, no loads, and both membranes fixed at height zero.
+    /// The paper's pair, which starts from unit tensions, no loads, and both membranes fixed at height zero.
     pub fn builder() -> ContactProblemBuilder {
-        ContactProblemBuilder { tension: [1.0; 2], load: [0.0.into(), 0.0.into()], height: 0.0.into() }
+        ContactProblemBuilder::default()
     }
 
-    /// `[mu1, mu2]`, force per length, positive.
-    pub fn tension(&self) -> [f64; 2] {
-        self.tension
+    /// The paper's pair: tensions `mu1`, `mu2`, loads `f1`, `f2`, and the height `g` at which membrane 1 is fixed.
+    ///
+    /// # Errors
+    /// As [`ContactProblemBuilder::build`].
+    pub fn pair<F: Into<Function>>(
+        [mu1, mu2]: [f64; 2],
+        [f1, f2]: [F; 2],
+        g: impl Into<Function>,
+    ) -> Result<Self, ProblemError> {
+        Self::builder().tension(mu1, mu2).load(f1, f2).height(g).build()
     }
 
-    /// `[f1, f2]`, force per area, positive upwards.
-    pub fn load(&self) -> &[Function; 2] {
-        &self.load
+    /// One membrane over a floor: the classical obstacle problem.
+    ///
+    /// # Errors
+    /// As [`StackBuilder::build`].
+    pub fn obstacle(membrane: Membrane, floor: impl Into<Field>) -> Result<Self, ProblemError> {
+        Self::stack().membrane(membrane).floor(floor).build()
     }
 
-    /// `g`, the height at which membrane 1 is fixed on the boundary; its values elsewhere are not used.
-    pub fn height(&self) -> &Function {
-        &self.height
+    /// Any number of membranes, added from the top.
+    pub fn stack() -> StackBuilder {
+        StackBuilder::default()
     }
+
+    /// The membranes from the top.
+    pub fn membranes(&self) -> &[Membrane] {
+        &self.membranes
+    }
+
+    /// What no membrane is above.
+    pub fn ceiling(&self) -> Option<&Field> {
+        self.ceiling.as_ref()
+    }
+
+    /// What no membrane is below.
+    pub fn floor(&self) -> Option<&Field> {
+        self.floor.as_ref()
+    }
+
+    /// The data of the paper's pair, where it is one: two membranes without obstacles and foundations, of constant tensions,
+    /// under loads that are one function each, fixed all around at `g >= 0` and at 0.
+    pub fn as_pair(&self) -> Option<&Pair> {
+        self.pair.as_ref()
+    }
+
+    /// The names of the regions that its data ask for, each once.
+    pub fn regions(&self) -> Vec<&str> {
+        let obstacles = [&self.ceiling, &self.floor].into_iter().flatten().flat_map(Field::names);
+        each_once(self.membranes.iter().flat_map(Membrane::regions).chain(obstacles))
+    }
+
+    /// The names of the curves that its data ask for, each once.
+    pub fn curves(&self) -> Vec<&str> {
+        each_once(self.membranes.iter().flat_map(Membrane::curves))
+    }
+}
+
+/// In the order in which they come first.
+fn each_once<'n>(names: impl Iterator<Item = &'n str>) -> Vec<&'n str> {
+    let mut found: Vec<&str> = Vec::new();
+    for name in names {
+        if !found.contains(&name) {
+            found.push(name);
+        }
+    }
+    found
 }
 
 impl ExactSolution {
@@ -66,64 +152,7 @@ impl ExactSolution {
     /// # Errors
     /// As [`ContactProblemBuilder::build`].
     pub fn problem(&self) -> Result<ContactProblem, ProblemError> {
-        let [mu1, mu2] = self.tension();
-        let [f1, f2] = self.load_functions();
-        ContactProblem::builder().tension(mu1, mu2).load(f1, f2).height(self.height_function()).build()
-    }
-}
-
-/// Collects the data of a [`ContactProblem`].
-#[derive(Debug, Clone)]
-pub struct ContactProblemBuilder {
-    tension: [f64; 2],
-    load: [Function; 2],
-    height: Function,
-}
-
-impl ContactProblemBuilder {
-    /// The tensions `mu1`, `mu2` (force per length).
-    pub fn tension(mut self, mu1: f64, mu2: f64) -> Self {
-        self.tension = [mu1, mu2];
-        self
-    }
-
-    /// The loads `f1`, `f2` (force per area, positive upwards).
-    pub fn load(mut self, f1: impl Into<Function>, f2: impl Into<Function>) -> Self {
-        self.load = [f1.into(), f2.into()];
-        self
-    }
-
-    /// The height `g` of membrane 1 on the boundary.
-    pub fn height(mut self, g: impl Into<Function>) -> Self {
-        self.height = g.into();
-        self
-    }
-
-    /// Checks what can be checked without a mesh.
-    ///
-    /// # Errors
-    /// A tension that is not positive and finite, a constant load that is not finite, a constant height that is
-    /// negative or not finite. Functions of the point are checked where they are evaluated, by
-    /// [`Discretization::new`](crate::discretization::Discretization::new).
-    pub fn build(self) -> Result<ContactProblem, ProblemError> {
-        for (membrane, mu) in [1, 2].into_iter().zip(self.tension) {
-            if !(mu > 0.0 && mu.is_finite()) {
-                return Err(ProblemError::Tension { membrane, value: mu });
-            }
-        }
-        for (membrane, load) in [1, 2].into_iter().zip(&self.load) {
-            if let Function::Constant(value) = *load
-                && !value.is_finite()
-            {
-                return Err(ProblemError::Load { membrane, value });
-            }
-        }
-        if let Function::Constant(value) = self.height
-            && !(value >= 0.0 && value.is_finite())
-        {
-            return Err(ProblemError::Height { value });
-        }
-        Ok(ContactProblem { tension: self.tension, load: self.load, height: self.height })
+        ContactProblem::pair(self.tension(), self.load_functions(), self.height_function())
     }
 }
 
@@ -134,7 +163,7 @@ pub enum ProblemError {
     /// A tension out of range.
     #[error("tension mu{membrane} is {}: give a positive, finite number", Number(*value))]
     Tension {
-        /// 1 or 2.
+        /// Which, counted from 1 at the top.
         membrane: usize,
         /// The value given.
         value: f64,
@@ -142,7 +171,7 @@ pub enum ProblemError {
     /// A constant load out of range.
     #[error("load f{membrane} is {}: give a finite number", Number(*value))]
     Load {
-        /// 1 or 2.
+        /// Which, counted from 1 at the top.
         membrane: usize,
         /// The value given.
         value: f64,
@@ -156,27 +185,23 @@ pub enum ProblemError {
         /// The value given.
         value: f64,
     },
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn valid_data_build_and_each_invalid_datum_is_named() {
-        let valid = || ContactProblem::builder().tension(1.0, 3.0).load(-1.0, 2.0).height(0.5);
-        assert!(valid().build().is_ok());
-        for mu in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-            assert!(matches!(
-                valid().tension(1.0, mu).build(),
-                Err(ProblemError::Tension { membrane: 2, .. })
-            ));
-        }
-        for f in [f64::NAN, f64::NEG_INFINITY] {
-            assert!(matches!(valid().load(f, 0.0).build(), Err(ProblemError::Load { membrane: 1, .. })));
-        }
-        for g in [-1e-9, f64::NAN, f64::INFINITY] {
-            assert!(matches!(valid().height(g).build(), Err(ProblemError::Height { .. })));
-        }
-    }
+    /// A foundation out of range.
+    #[error("foundation c{membrane} is {}: give a finite number >= 0", Number(*value))]
+    Foundation {
+        /// Which, counted from 1 at the top.
+        membrane: usize,
+        /// The value given.
+        value: f64,
+    },
+    /// A height, a line load or an obstacle that is no finite number.
+    #[error("{datum} is {}: give a finite number", Number(*value))]
+    NotFinite {
+        /// Which datum.
+        datum: String,
+        /// The value given.
+        value: f64,
+    },
+    /// No membrane.
+    #[error("there is no membrane: add at least one")]
+    NoMembrane,
 }

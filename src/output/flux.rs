@@ -56,7 +56,8 @@ mod tests {
         let candidate = ActiveSet.solve(&d, &SolverOptions::default()).unwrap();
         let solution = certify(&d, candidate, 1e-8).unwrap();
         let sub = SubTriangulation::new(&mesh).unwrap();
-        let loads = [0, 1].map(|i| element_loads(&mesh, &problem.load()[i]).unwrap());
+        let loads =
+            [0, 1].map(|i| element_loads(&mesh, &problem.as_pair().expect("a pair").load()[i]).unwrap());
         let fluxes =
             Reconstructor::new(&d, &sub, loads).reconstruct(solution.displacement(), Reconstruction::Full);
         let mut file = Vec::new();

@@ -130,7 +130,7 @@ fn flux_lines(
     solution: &ContactSolution,
 ) -> Result<String, Box<dyn std::error::Error>> {
     let sub = SubTriangulation::new(d.mesh())?;
-    let [f1, f2] = problem.load();
+    let [f1, f2] = problem.as_pair().expect("a discretization of the pair belongs to one").load();
     let loads = [element_loads(d.mesh(), f1)?, element_loads(d.mesh(), f2)?];
     let reconstructor = Reconstructor::new(d, &sub, loads);
     let mut text = format!("\n  {:22}", "fluxes t_ih");

@@ -192,7 +192,7 @@ fn write_dual(
     if !clock.allows(0.0) {
         return left_out(&[FLUX]);
     }
-    let [f1, f2] = case.problem.load();
+    let [f1, f2] = case.problem.as_pair().expect("a discretization of the pair belongs to one").load();
     let load = |f| element_loads(mesh, f).map_err(|error| bad_input(FLUX, &error));
     let reconstructor = Reconstructor::new(d, &sub, [load(f1)?, load(f2)?]);
     let fluxes = reconstructor.reconstruct(solution.displacement(), Reconstruction::Full);

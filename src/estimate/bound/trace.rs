@@ -5,7 +5,7 @@ use crate::estimate::MeasureError;
 use crate::flux::WedgeFluxes;
 use crate::geometry::distance_sq;
 use crate::mesh::{Circle, Mesh, VertexKind, VertexTriangles};
-use crate::problem::{ContactProblem, Domain, EvaluationError, Function};
+use crate::problem::{ContactProblem, Domain, EvaluationError, Function, Pair};
 
 /// A boundary vertex lies on the circle up to this fraction of the radius: rounding of its coordinates.
 const ON_CIRCLE: f64 = 1e-9;
@@ -28,7 +28,7 @@ const GAUSS: [(f64, f64); 3] =
 /// the data on the circle; and so are the fluxes, their divergence being the load and the action zero. On the edge itself the
 /// data are those on the circle at its foot.
 pub(super) struct Trace<'a> {
-    problem: &'a ContactProblem,
+    pair: &'a Pair,
     mesh: &'a Mesh,
     pub(super) around: VertexTriangles,
     height_h: &'a [f64],
@@ -67,7 +67,8 @@ impl<'a> Trace<'a> {
         };
         let circle = domain.and_then(Circle::of_domain).filter(has_its_boundary_on);
         let around = VertexTriangles::new(d.mesh().points().len(), d.mesh().triangles());
-        Self { problem, mesh: d.mesh(), around, height_h: d.height(), circle }
+        let pair = problem.as_pair().expect("a discretization of the pair belongs to one");
+        Self { pair, mesh: d.mesh(), around, height_h: d.height(), circle }
     }
 
     /// The lift `E` of `g - g_h` from the boundary edges of triangle `k`: on the ray from a point of the edge to an apex, the value
@@ -79,7 +80,7 @@ impl<'a> Trace<'a> {
     /// When the height has no value on the edges.
     pub(super) fn lift(&self, k: usize, lambda: &[f64]) -> Result<Lift, MeasureError> {
         let mut sum = Lift::default();
-        if self.circle.is_none() && matches!(self.problem.height(), Function::Constant(_)) {
+        if self.circle.is_none() && matches!(self.pair.height(), Function::Constant(_)) {
             return Ok(sum);
         }
         let corners = self.mesh.corners(k);
@@ -106,8 +107,8 @@ impl<'a> Trace<'a> {
         let foot = dot(from_apex, edge.tangent);
         let (mut seminorm_sq, mut positive) = (0.0, 0.0);
         for (_, t, weight) in halves() {
-            let value = edge.height(self.problem.height(), t)? - (first + t * (last - first));
-            let slope = (edge.height_slope(self.problem.height(), t)? - (last - first)) / edge.length;
+            let value = edge.height(self.pair.height(), t)? - (first + t * (last - first));
+            let slope = (edge.height_slope(self.pair.height(), t)? - (last - first)) / edge.length;
             // At the edge; at the part r of the ray from the apex, r^(DECAY - 1) times that.
             let across = (DECAY * value - (foot + t * edge.length) * slope) / distance;
             let weight = weight * edge.length * distance;
@@ -131,15 +132,15 @@ impl<'a> Trace<'a> {
         if self.circle.is_none() {
             return Ok(sum);
         }
-        let mu = self.problem.tension()[membrane];
-        let load = &self.problem.load()[membrane];
+        let mu = self.pair.tension()[membrane];
+        let load = &self.pair.load()[membrane];
         for corner in self.boundary_edges(k) {
             let edge = self.edge(k, corner);
             let outward = fluxes.boundary_outward(membrane, k, corner);
             for (half, t, along) in halves() {
                 let trace = outward[half] / (0.5 * edge.length);
                 let slope = if membrane == 0 {
-                    let slope = edge.height_slope(self.problem.height(), t);
+                    let slope = edge.height_slope(self.pair.height(), t);
                     slope.map_err(MeasureError::of_height)? / edge.length
                 } else {
                     0.0

@@ -26,7 +26,8 @@ struct MeanLoads {
 impl MeanLoads {
     fn new(problem: &ContactProblem, mesh: &Mesh) -> Self {
         let mut d = Discretization::new(problem, mesh.clone()).unwrap();
-        let means = [0, 1].map(|i| element_means(mesh, &problem.load()[i]).unwrap());
+        let means =
+            [0, 1].map(|i| element_means(mesh, &problem.as_pair().expect("a pair").load()[i]).unwrap());
         let integrals = [0, 1].map(|i: usize| {
             let third = |k: usize| [means[i][k] * mesh.triangle_area(k) / 3.0; 3];
             (0..mesh.triangles().len()).map(third).collect::<Vec<_>>()
@@ -99,7 +100,8 @@ fn residuals_have_the_mean_zero_on_every_triangle_for_any_load() {
         let d = Discretization::new(&problem, mesh.clone()).unwrap();
         let sub = SubTriangulation::new(&mesh).unwrap();
         let solution = solve(&d);
-        let means = [0, 1].map(|i| element_means(&mesh, &problem.load()[i]).unwrap());
+        let means =
+            [0, 1].map(|i| element_means(&mesh, &problem.as_pair().expect("a pair").load()[i]).unwrap());
         let reconstructor = Reconstructor::new(&d, &sub, loads(&problem, &mesh));
         for kind in [Reconstruction::Full, Reconstruction::PaperCompatible] {
             let flux = reconstructor.reconstruct(solution.displacement(), kind);
@@ -131,7 +133,7 @@ fn the_share_of_a_wedge_is_the_load_weighted_by_the_hat_function() {
             let terms = DEGREE_4.points.iter().zip(DEGREE_4.weights);
             let term = |(b, weight): (&[f64; 3], &f64)| {
                 let [x, y] = [0, 1].map(|axis| (0..3).map(|j| b[j] * corners[j][axis]).sum::<f64>());
-                weight * b[i].powi(power) * problem.load()[0].eval(x, y).unwrap()
+                weight * b[i].powi(power) * problem.as_pair().expect("a pair").load()[0].eval(x, y).unwrap()
             };
             terms.map(term).sum::<f64>()
         };

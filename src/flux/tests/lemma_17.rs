@@ -76,7 +76,7 @@ fn lemma_17_with_loads_that_oscillate() {
         let reconstructor = Reconstructor::new(&d, &sub, loads(&problem, &mesh));
         for kind in Reconstruction::ALL {
             let flux = reconstructor.reconstruct(solution.displacement(), kind);
-            for (i, (flux, f)) in flux.iter().zip(problem.load()).enumerate() {
+            for (i, (flux, f)) in flux.iter().zip(problem.as_pair().expect("a pair").load()).enumerate() {
                 let sides = both_sides(&d, &solution, flux, i, f, |[x, y]| -f.eval(x, y).unwrap());
                 let [difference, oscillation] = compare(&d, &sides);
                 assert!(difference < ROUNDING, "{name}, {}: {difference:e}", kind.name());
@@ -108,12 +108,16 @@ fn lemma_17_against_an_exact_solution() {
             / (2.0 * STEP)
     };
     for (i, sign) in [(0, -1.0), (1, 1.0)] {
-        let mu = problem.tension()[i];
+        let mu = problem.as_pair().expect("a pair").tension()[i];
         let pde = |point: [f64; 2]| mu * laplacian(i, point) - sign * exact.lambda(point[0], point[1]);
-        let sides = both_sides(&d, &solution, &flux[i], i, &problem.load()[i], pde);
+        let sides =
+            both_sides(&d, &solution, &flux[i], i, &problem.as_pair().expect("a pair").load()[i], pde);
         let [difference, oscillation] = compare(&d, &sides);
         assert!(oscillation < ROUNDING && difference < QUOTIENT, "{difference:e} {oscillation:e}");
-        let without = both_sides(&d, &solution, &flux[i], i, &problem.load()[i], |x| mu * laplacian(i, x));
+        let without =
+            both_sides(&d, &solution, &flux[i], i, &problem.as_pair().expect("a pair").load()[i], |x| {
+                mu * laplacian(i, x)
+            });
         assert!(compare(&d, &without)[0] > 1e3 * QUOTIENT, "without the exact action");
     }
 }

@@ -60,7 +60,7 @@ pub(super) fn cubic_problem() -> ContactProblem {
 
 /// `int_K f_i phi_a` for both loads of a problem.
 pub(super) fn loads(problem: &ContactProblem, mesh: &Mesh) -> [Vec<[f64; 3]>; 2] {
-    [0, 1].map(|i| element_loads(mesh, &problem.load()[i]).unwrap())
+    [0, 1].map(|i| element_loads(mesh, &problem.as_pair().expect("a pair").load()[i]).unwrap())
 }
 
 /// The certified solution.

@@ -1,8 +1,9 @@
 use proptest::prelude::*;
 
 use crate::geometry::distance_sq;
-use crate::mesh::samples::{Random, irregular, renumbered, square};
+use crate::mesh::samples::{irregular, renumbered, square};
 use crate::mesh::{Bisection, GroupError, Mesh, MeshFamily, MeshSize, Pattern, generate, l_shape, polygon};
+use crate::numeric::Random;
 use crate::problem::Domain;
 
 /// Rounding of sums over the triangles and edges of small meshes of size one.

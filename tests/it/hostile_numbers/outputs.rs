@@ -123,8 +123,10 @@ fn encode(name: &str, drawing: Result<Drawing, String>) -> Result<(), String> {
 fn fluxes(hostile: &Hostile, d: &Discretization, bounded: &Bounded) -> Result<(), String> {
     let solution = &bounded.solution;
     let sub = SubTriangulation::new(d.mesh()).map_err(|error| error.to_string())?;
-    let load =
-        |i: usize| element_loads(d.mesh(), &hostile.problem.load()[i]).map_err(|error| error.to_string());
+    let load = |i: usize| {
+        element_loads(d.mesh(), &hostile.problem.as_pair().expect("a pair").load()[i])
+            .map_err(|error| error.to_string())
+    };
     let reconstructor = Reconstructor::new(d, &sub, [load(0)?, load(1)?]);
     let fluxes = reconstructor.reconstruct(solution.displacement(), Reconstruction::Full);
     write_flux_vtu(&sub, &fluxes, solution, std::io::sink()).map_err(|error| format!("flux.vtu: {error}"))?;

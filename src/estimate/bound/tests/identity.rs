@@ -33,7 +33,8 @@ impl Identity {
         let solution = solve(&d);
         let parts = bound(&problem, &exact.domain(), &d, solution.displacement()).parts;
         let sub = SubTriangulation::new(&mesh).unwrap();
-        let load = [0, 1].map(|i| element_loads(&mesh, &problem.load()[i]).unwrap());
+        let load =
+            [0, 1].map(|i| element_loads(&mesh, &problem.as_pair().expect("a pair").load()[i]).unwrap());
         let reconstructor = Reconstructor::new(&d, &sub, load);
         let flux = reconstructor.reconstruct(solution.displacement(), Reconstruction::Full);
         let [errors, contact] = sums(exact, &mesh, &flux, solution.displacement(), solution.lambda());

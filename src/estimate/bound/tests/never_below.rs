@@ -139,7 +139,7 @@ fn on_random_polygons_against_a_finer_solution() {
         let energy_sq = |i: usize| {
             let u = &difference[i];
             let at = |a: usize| u[a] * d_fine.stiffness_row(a, |b| u[b]);
-            problem.tension()[i] * (0..u.len()).map(at).sum::<f64>()
+            problem.as_pair().expect("a pair").tension()[i] * (0..u.len()).map(at).sum::<f64>()
         };
         let distance = (energy_sq(0) + energy_sq(1)).sqrt();
         assert!(found >= distance, "seed {seed}: {found} is below {distance}");

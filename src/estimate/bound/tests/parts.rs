@@ -28,7 +28,7 @@ fn oscillation(problem: &ContactProblem, mesh: &Mesh) -> f64 {
 /// `(sum_K h_K^2 / (pi^2 mu_1) ||f_1 - f_a|_K||_K^2)^(1/2)` by quadrature on the wedges.
 fn oscillation_by_definition(problem: &ContactProblem, mesh: &Mesh) -> f64 {
     let sub = SubTriangulation::new(mesh).unwrap();
-    let f = &problem.load()[0];
+    let f = &problem.as_pair().expect("a pair").load()[0];
     let integral = |corners: [[f64; 2]; 3], area: f64, of: &dyn Fn([f64; 2], [f64; 3]) -> f64| {
         let at = |b: &[f64; 3]| [0, 1].map(|axis| (0..3).map(|j| b[j] * corners[j][axis]).sum::<f64>());
         let terms = DEGREE_4.points.iter().zip(DEGREE_4.weights);
@@ -43,7 +43,7 @@ fn oscillation_by_definition(problem: &ContactProblem, mesh: &Mesh) -> f64 {
             for t in [2 * (3 * k + corner), 2 * (3 * k + corner) + 1] {
                 let square = |[x, y]: [f64; 2], _: [f64; 3]| (f.eval(x, y).unwrap() - share).powi(2);
                 let residual_sq = integral(sub.mesh().corners(t), sub.mesh().triangle_area(t), &square);
-                sum += longest_sq / (PI * PI) * residual_sq / problem.tension()[0];
+                sum += longest_sq / (PI * PI) * residual_sq / problem.as_pair().expect("a pair").tension()[0];
             }
         }
     }

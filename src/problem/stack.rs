@@ -1,0 +1,131 @@
+//! Any number of membranes between obstacles.
+
+use super::pair::Pair;
+use super::{ContactProblem, Field, Function, Membrane, ProblemError, Support};
+
+/// Collects membranes from the top, and obstacles.
+#[derive(Debug, Clone, Default)]
+pub struct StackBuilder {
+    membranes: Vec<Membrane>,
+    ceiling: Option<Field>,
+    floor: Option<Field>,
+}
+
+impl StackBuilder {
+    /// A further membrane, below those that there are.
+    pub fn membrane(mut self, membrane: Membrane) -> Self {
+        self.membranes.push(membrane);
+        self
+    }
+
+    /// What no membrane is above.
+    pub fn ceiling(mut self, height: impl Into<Field>) -> Self {
+        self.ceiling = Some(height.into());
+        self
+    }
+
+    /// What no membrane is below.
+    pub fn floor(mut self, height: impl Into<Field>) -> Self {
+        self.floor = Some(height.into());
+        self
+    }
+
+    /// Checks what can be checked without a mesh.
+    ///
+    /// # Errors
+    /// No membrane; a tension that is not positive, a foundation that is negative, any number that is not finite. What is
+    /// known on a mesh only (functions, regions, curves, the order of heights and obstacles) is checked by
+    /// [`Discretization::new`](crate::discretization::Discretization::new).
+    pub fn build(self) -> Result<ContactProblem, ProblemError> {
+        let Self { membranes, ceiling, floor } = self;
+        if membranes.is_empty() {
+            return Err(ProblemError::NoMembrane);
+        }
+        for (k, membrane) in membranes.iter().enumerate() {
+            check(k + 1, membrane)?;
+        }
+        for (name, obstacle) in [("the ceiling", &ceiling), ("the floor", &floor)] {
+            if let Some(value) = obstacle.iter().flat_map(|field| field.numbers()).find(|v| !v.is_finite()) {
+                return Err(ProblemError::NotFinite { datum: name.into(), value });
+            }
+        }
+        let pair = match membranes.as_slice() {
+            [upper, lower] if ceiling.is_none() && floor.is_none() => Pair::of([upper, lower]),
+            _ => None,
+        };
+        Ok(ContactProblem { membranes, ceiling, floor, pair })
+    }
+}
+
+/// The numbers of membrane `i`.
+fn check(i: usize, membrane: &Membrane) -> Result<(), ProblemError> {
+    let outside = |field: &Field, is_allowed: fn(f64) -> bool| {
+        field.numbers().into_iter().find(|&value| !(value.is_finite() && is_allowed(value)))
+    };
+    if let Some(value) = outside(&membrane.tension, |mu| mu > 0.0) {
+        return Err(ProblemError::Tension { membrane: i, value });
+    }
+    if let Some(value) = outside(&membrane.load, |_| true) {
+        return Err(ProblemError::Load { membrane: i, value });
+    }
+    if let Some(value) = outside(&membrane.foundation, |c| c >= 0.0) {
+        return Err(ProblemError::Foundation { membrane: i, value });
+    }
+    for support in membrane.parts.iter().map(|(_, support)| support).chain([&membrane.elsewhere]) {
+        let (datum, value) = match support {
+            Support::Fixed(height) => ("height g", outside(height, |_| true)),
+            Support::Free { traction: Function::Constant(value) } if !value.is_finite() => {
+                ("line load t", Some(*value))
+            }
+            Support::Free { .. } => continue,
+        };
+        if let Some(value) = value {
+            return Err(ProblemError::NotFinite { datum: format!("{datum}{i}"), value });
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refusal(membrane: Membrane) -> String {
+        let valid = Membrane::new(1.0);
+        ContactProblem::stack().membrane(valid).membrane(membrane).build().unwrap_err().to_string()
+    }
+
+    #[test]
+    fn each_invalid_number_is_named_with_its_membrane() {
+        let valid = || Membrane::new(1.0);
+        let refused = [
+            (Membrane::new(Field::by_region([("a", 1.0), ("b", 0.0)])), "tension mu2 is 0"),
+            (valid().load(Field::PerVertex([1.0, f64::NAN].into())), "load f2 is NaN"),
+            (valid().foundation(-1.0), "foundation c2 is -1"),
+            (valid().height(f64::INFINITY), "height g2 is inf"),
+            (valid().height_on("rim", f64::NAN), "height g2 is NaN"),
+            (valid().traction_on("rim", f64::NAN), "line load t2 is NaN"),
+        ];
+        for (membrane, words) in refused {
+            let message = refusal(membrane);
+            assert!(message.starts_with(words), "{message}");
+        }
+        let floor = ContactProblem::obstacle(valid(), f64::NAN).unwrap_err();
+        assert_eq!(floor.to_string(), "the floor is NaN: give a finite number");
+        assert_eq!(ContactProblem::stack().build().unwrap_err(), ProblemError::NoMembrane);
+    }
+
+    #[test]
+    fn names_are_those_of_all_data() {
+        let steel = Field::by_region([("steel", 2.0)]).elsewhere(1.0);
+        let problem = ContactProblem::stack()
+            .membrane(Membrane::new(steel.clone()).free_on("rim"))
+            .membrane(
+                Membrane::new(1.0).load(Field::by_region([("patch", -1.0)]).elsewhere(0.0)).free_on("rim"),
+            )
+            .floor(steel)
+            .build()
+            .unwrap();
+        assert_eq!((problem.regions(), problem.curves()), (vec!["steel", "patch"], vec!["rim"]));
+    }
+}
