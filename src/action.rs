@@ -7,6 +7,7 @@ mod projection;
 mod recovery;
 mod residuals;
 mod solution;
+mod stack;
 #[cfg(all(test, feature = "clarabel"))]
 mod tests;
 
@@ -17,3 +18,4 @@ pub use projection::CutOff;
 pub use recovery::Action;
 pub use residuals::{Residual, Residuals};
 pub use solution::ContactSolution;
+pub use stack::{GapSolution, StackSolution, certify_stack};

@@ -1,5 +1,7 @@
 //! A problem on a mesh: everything that the discrete problem (3.4) is made of.
 
+mod stack;
+
 use std::sync::Arc;
 
 use sprs::CsMat;
@@ -15,6 +17,9 @@ use crate::text::Number;
 
 /// Tensions, displacements and loads must lie between the inverse of this and this: energies must not overflow.
 const LARGEST: f64 = 1e40;
+
+pub use stack::{Displacements, GapRow, IntegrationRule, StackDiscretization, StackError};
+pub(crate) use stack::{Layer, Segment, segments};
 
 /// `[u1, u2]`, each over vertices.
 pub type Displacement = [Vec<f64>; 2];

@@ -10,6 +10,7 @@ mod multigrid;
 mod options;
 mod polish;
 mod qp_solver;
+mod stack;
 mod statistics;
 
 pub use active_set::ActiveSet;
@@ -20,4 +21,5 @@ pub use error::SolverError;
 pub use multigrid::Multigrid;
 pub use options::SolverOptions;
 pub use qp_solver::QpSolver;
+pub use stack::{StackCandidate, StackSolver};
 pub use statistics::{PolishReport, Stalled, Statistics};

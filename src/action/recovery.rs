@@ -6,7 +6,7 @@ use crate::parallel::prelude::*;
 
 /// Rounding leaves of a difference at most this many units in the last place of the terms that cancel in it: a row of
 /// `K` has about seven entries, each the sum of two rounded contributions.
-const ROUNDINGS: f64 = 32.0;
+pub(super) const ROUNDINGS: f64 = 32.0;
 
 /// The action recovered from displacements at one unknown. Unit: force per area.
 #[derive(Debug, Clone, Copy)]

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::Action;
 use crate::discretization::{Discretization, Displacement};
-use crate::mesh::VertexKind;
+use crate::mesh::{Mesh, VertexKind};
 use crate::numeric::or_infinite;
 use crate::parallel::prelude::*;
 use crate::parallel::{BLOCK, sums};
@@ -33,7 +33,8 @@ pub struct Residuals {
     pub dual_sign: Residual,
     /// `lambda_a (u1 - u2)(a) = 0` (4.8).
     pub complementarity: Residual,
-    /// `lambda_1 = lambda_2` (Proposition 12).
+    /// `lambda_1 = lambda_2` (Proposition 12). In a stack, the block balance: where membranes touch each other and nothing else, the
+    /// forces on all of them add up to zero.
     pub action_mismatch: Residual,
     /// `y_a = lambda_a int phi_a`, the integrals summed over the triangles anew: multipliers against post-processing.
     pub dual_mismatch: Residual,
@@ -66,7 +67,7 @@ impl Residuals {
             "multipliers and actions are over unknowns"
         );
         let (force, length) = (scales.force_density, scales.displacement);
-        let integrals = hat_integrals(d);
+        let integrals = hat_integrals(d.mesh());
         let at_unknown = |(k, &a): (usize, &usize)| {
             let Action { from_membrane: [lambda_1, lambda_2], rounding, lambda, lambda_rounding } = action[k];
             let density = multiplier[k] / d.dual_area()[a];
@@ -102,7 +103,7 @@ impl Residuals {
     }
 
     /// The larger one of each check.
-    fn larger(self, other: Self) -> Self {
+    pub(super) fn larger(self, other: Self) -> Self {
         Self {
             stationarity: self.stationarity.larger(other.stationarity),
             primal: self.primal.larger(other.primal),
@@ -136,11 +137,11 @@ impl Residuals {
 
 impl Residual {
     /// A defect, and the rounding that is allowed in it.
-    fn new(defect: f64, rounding: f64) -> Self {
+    pub(super) fn new(defect: f64, rounding: f64) -> Self {
         Self { value: or_infinite(defect), beyond_rounding: or_infinite(defect - rounding) }
     }
 
-    fn larger(self, other: Self) -> Self {
+    pub(super) fn larger(self, other: Self) -> Self {
         Self {
             value: self.value.max(other.value),
             beyond_rounding: self.beyond_rounding.max(other.beyond_rounding),
@@ -169,16 +170,16 @@ fn variational_inequality(
 }
 
 /// `int phi_a` over vertices, triangle by triangle: what `|D_a|` must be by (4.17).
-fn hat_integrals(d: &Discretization) -> Vec<f64> {
+pub(super) fn hat_integrals(mesh: &Mesh) -> Vec<f64> {
     let over = |triangles: Range<usize>| {
-        let mut integrals = vec![0.0; d.mesh().points().len()];
+        let mut integrals = vec![0.0; mesh.points().len()];
         for t in triangles {
-            let third = d.mesh().triangle_area(t) / 3.0;
-            d.mesh().triangles()[t].iter().for_each(|&a| integrals[a] += third);
+            let third = mesh.triangle_area(t) / 3.0;
+            mesh.triangles()[t].iter().for_each(|&a| integrals[a] += third);
         }
         integrals
     };
-    let triangles = d.mesh().triangles().len();
+    let triangles = mesh.triangles().len();
     let (mut integrals, others) =
         crate::parallel::join(|| over(0..triangles / 2), || over(triangles / 2..triangles));
     integrals.iter_mut().zip(others).for_each(|(integral, other)| *integral += other);

@@ -199,10 +199,30 @@ struct Block {
     excess_sq: f64,
 }
 
+/// `int_K f phi_i` for the three corners of the given triangles, by the quadrature of [`load`](super::load()); `f` is not
+/// evaluated anywhere else.
+///
+/// # Errors
+/// As [`load`](super::load()).
+pub(crate) fn integrals_on(
+    mesh: &Mesh,
+    triangles: &[usize],
+    f: &Function,
+) -> Result<Vec<[f64; 3]>, EvaluationError> {
+    let second_rule = SecondRule::new(triangles.iter().map(|&t| mesh.triangle_area(t)).sum());
+    let of_block = |block: Range<usize>| on_block(mesh, triangles[block].iter().copied(), f, &second_rule);
+    let blocks: Vec<_> = blocks_of(BATCH, triangles.len()).into_par_iter().map(of_block).collect();
+    let mut integrals = Vec::with_capacity(triangles.len());
+    for block in blocks {
+        integrals.extend(block?.moments.into_iter().map(|moments| moments.integrals));
+    }
+    Ok(integrals)
+}
+
 /// The moments on one block of triangles.
 fn on_block(
     mesh: &Mesh,
-    triangles: Range<usize>,
+    triangles: impl Iterator<Item = usize> + Clone,
     f: &Function,
     second_rule: &SecondRule,
 ) -> Result<Block, EvaluationError> {

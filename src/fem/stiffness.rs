@@ -21,8 +21,17 @@ pub fn stiffness(mesh: &Mesh) -> CsMat<f64> {
 
 /// [`stiffness`], with the triangles around the vertices at hand.
 pub(crate) fn stiffness_around(mesh: &Mesh, around: &VertexTriangles) -> CsMat<f64> {
+    weighted_stiffness(mesh, around, |_| 1.0)
+}
+
+/// The P1 stiffness matrix `K_ab = int mu grad phi_a . grad phi_b` of a tension `mu` that is one number on each triangle.
+pub(crate) fn weighted_stiffness(
+    mesh: &Mesh,
+    around: &VertexTriangles,
+    mu: impl Fn(usize) -> f64 + Sync,
+) -> CsMat<f64> {
     let vertices = mesh.points().len();
-    let rows_of = |block| assemble_rows(mesh, around, block);
+    let rows_of = |block| assemble_rows(mesh, around, &mu, block);
     let blocks: Vec<Rows> = blocks(vertices).into_par_iter().map(rows_of).collect();
 
     let entries = blocks.iter().map(|rows| rows.columns.len()).sum();
@@ -48,7 +57,12 @@ struct Rows {
     values: Vec<f64>,
 }
 
-fn assemble_rows(mesh: &Mesh, around: &VertexTriangles, vertices: std::ops::Range<usize>) -> Rows {
+fn assemble_rows(
+    mesh: &Mesh,
+    around: &VertexTriangles,
+    mu: &impl Fn(usize) -> f64,
+    vertices: std::ops::Range<usize>,
+) -> Rows {
     let mut rows = Rows::default();
     // (column, triangle, contribution) of one row: sorted by the first two, so that sums have one order
     let mut contributions: Vec<(usize, usize, f64)> = Vec::new();
@@ -58,7 +72,7 @@ fn assemble_rows(mesh: &Mesh, around: &VertexTriangles, vertices: std::ops::Rang
             let corners = mesh.triangles()[t];
             let local = local_stiffness(mesh.corners(t));
             let row = corner_of(corners, a);
-            contributions.extend((0..3).map(|column| (corners[column], t, local[row][column])));
+            contributions.extend((0..3).map(|column| (corners[column], t, mu(t) * local[row][column])));
         }
         contributions.sort_unstable_by_key(|&(column, t, _)| (column, t));
         for entry in contributions.chunk_by(|p, q| p.0 == q.0) {

@@ -6,6 +6,6 @@ mod edges;
 mod midpoints;
 
 pub(crate) use adjacency::{HalfEdge, HalfEdges, VertexTriangles, corner_of};
-pub(super) use boundary::boundary_edges;
+pub(crate) use boundary::boundary_edges;
 pub(super) use edges::Edges;
 pub(super) use midpoints::Midpoints;

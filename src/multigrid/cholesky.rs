@@ -32,7 +32,6 @@ pub(crate) struct NotFactored;
 
 impl Cholesky {
     /// Factors `matrix`, symmetric with both triangles stored.
-    #[cfg(test)]
     pub(crate) fn new(matrix: CsMat<f64>) -> Result<Self, NotFactored> {
         let mut cholesky = Self::symbolic(matrix)?;
         cholesky.factor()?;

@@ -1,6 +1,10 @@
 //! The reduced discrete problem (3.4) as a quadratic program.
 
+mod stack;
+
 use sprs::{CsMat, TriMat};
+
+pub use stack::stack_qp;
 
 use super::QpProblem;
 use crate::discretization::Discretization;

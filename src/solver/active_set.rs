@@ -2,10 +2,12 @@
 
 mod nested;
 mod obstacle;
+mod repair;
 #[cfg(test)]
 mod tests;
 
-pub(super) use obstacle::{Obstacle, guess};
+pub(super) use obstacle::{CAUTION, Obstacle, ROUNDING, SLIGHT, guess};
+pub(super) use repair::Repair;
 
 use web_time::Instant;
 

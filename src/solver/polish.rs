@@ -15,7 +15,7 @@ use crate::qp::{KktResiduals, QpProblem, Status};
 
 /// Linear solves for the gap. An accurate answer needs one to four; where the membranes touch without pushing, the contact
 /// set moves by one layer of vertices at a time. A solve costs about a hundredth of an interior-point solve.
-const MAX_STEPS: usize = 100;
+pub(super) const MAX_STEPS: usize = 100;
 
 /// Polishes the candidate and keeps the result if its KKT residuals are smaller. `None` when a linear system cannot be
 /// solved, or the solve has to stop.

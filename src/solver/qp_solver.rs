@@ -20,6 +20,10 @@ impl QpSolver {
     pub fn new(backend: impl QpBackend + 'static) -> Self {
         Self { backend: Box::new(backend) }
     }
+
+    pub(super) fn backend_mut(&mut self) -> &mut dyn QpBackend {
+        self.backend.as_mut()
+    }
 }
 
 impl ContactSolver for QpSolver {
@@ -62,7 +66,7 @@ fn qp_options(d: &Discretization, options: &SolverOptions, begin: Instant) -> Qp
 }
 
 /// Has the problem solved in units of size 1, so that one tolerance fits every mesh (`q ~ h^2`) and all data.
-fn solve_nondimensional(
+pub(super) fn solve_nondimensional(
     backend: &mut dyn QpBackend,
     qp: &QpProblem,
     options: &QpOptions,

@@ -136,7 +136,7 @@ fn adapt_says_why_it_stops_short_and_keeps_what_it_has() {
     for (limit, why) in [
         ("--max-vertices 300", "more than 300 vertices"),
         ("--time-limit 1", "time limit"),
-        ("--memory-limit 0.234", "more memory"),
+        ("--memory-limit 0.113", "more memory"),
     ] {
         let (folder, runs) = in_folder(CASE, &[&format!("adapt case.toml --tolerance 0.001 {limit}")]);
         assert_eq!(runs[0].code, Some(1), "{limit}");

@@ -108,7 +108,7 @@ fn who_needs_more_memory_than_there_is_has_a_row_that_says_so() {
         (table, rows.into_iter().map(|row| (row.status, row.certified)).collect::<Vec<_>>())
     };
     let solved = || ("solved".to_owned(), true);
-    let (table, limited) = bench("--memory-limit 0.24");
+    let (table, limited) = bench("--memory-limit 0.119");
     assert_eq!(limited, [solved(), solved(), solved(), (MEMORY.into(), false)]);
     assert!(table.contains("no: memory_limit"), "{table}");
     assert_eq!(bench("--memory-limit 1").1, [(); 4].map(|()| solved()));
@@ -145,8 +145,8 @@ fn bad_arguments_are_one_line_and_nothing_is_written() {
         ("plates.toml --levels 40", ["plates.toml", "refine less"]),
         ("missing.toml", ["missing.toml", "name an existing file"]),
         ("--time-limit -1", ["--time-limit", "above 0"]),
-        ("--sizes 8,128 --memory-limit 0.24", ["GiB of memory", "--memory-limit"]),
-        ("plates.toml --levels 9 --memory-limit 0.24", ["GiB of memory", "--memory-limit"]),
+        ("--sizes 8,128 --memory-limit 0.119", ["GiB of memory", "--memory-limit"]),
+        ("plates.toml --levels 9 --memory-limit 0.119", ["GiB of memory", "--memory-limit"]),
         ("--merge other.csv", ["other.csv", "columns of bench.csv"]),
         ("--merge missing.csv", ["missing.csv", "columns of bench.csv"]),
         ("--no-run", ["--merge", "required"]),

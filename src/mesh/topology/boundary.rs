@@ -6,7 +6,7 @@ use crate::mesh::{Mesh, VertexKind};
 /// later; in increasing order of their lower and upper ends.
 ///
 /// Only edges between vertices of the boundary are looked at: of a fine mesh few.
-pub(in crate::mesh) fn boundary_edges(mesh: &Mesh) -> Vec<[usize; 2]> {
+pub(crate) fn boundary_edges(mesh: &Mesh) -> Vec<[usize; 2]> {
     let on_boundary = |a: usize| mesh.kind[a] == VertexKind::Boundary;
     let sides = mesh.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
     let mut candidates: Vec<[usize; 2]> = sides.filter(|&[a, b]| on_boundary(a) && on_boundary(b)).collect();

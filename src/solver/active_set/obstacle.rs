@@ -1,26 +1,24 @@
 //! The obstacle half on one level, and the repair of its contact set.
 
-use std::collections::HashSet;
-use std::hash::{DefaultHasher, Hash, Hasher};
-
 use sprs::CsMat;
 
+use super::repair::Repair;
 use crate::discretization::{Discretization, Displacement};
 use crate::multigrid::cholesky::{Cholesky, NotFactored};
 use crate::qp::{Limits, Status};
 
 /// A multiplier, or a gap times its diagonal entry, below zero by less than this fraction of the terms that cancel in its row
 /// is a zero, rounded. Measured in the row alone: at the tip of a mesh refined towards a point, gaps of any size are real.
-const ROUNDING: f64 = 256.0 * f64::EPSILON;
+pub(in crate::solver) const ROUNDING: f64 = 256.0 * f64::EPSILON;
 
 /// A gap below zero by less than this fraction of the displacements' scale is overlooked until nothing else is wrong: far from
 /// the right contact set such gaps come and go, and vertices that have joined for them leave again one layer in a step
 /// (138 factorisations in place of 34 for case F on 300,000 vertices).
-pub(super) const SLIGHT: f64 = 1e-12;
+pub(in crate::solver) const SLIGHT: f64 = 1e-12;
 
 /// A vertex is taken for touching when its multiplier is so much larger than its gap, each in units of the data. A guess
 /// that is too small is repaired in fewer steps than one that is too large: all that has passed through is seen at once.
-const CAUTION: f64 = 30.0;
+pub(in crate::solver) const CAUTION: f64 = 30.0;
 
 /// `K w - y = b`, `w >= 0`, `y >= 0`, `w'y = 0`.
 pub(in crate::solver) struct Obstacle<'k> {
@@ -137,40 +135,6 @@ impl<'k> Obstacle<'k> {
     fn row(&self, i: usize, term: impl Fn(f64, usize) -> f64) -> f64 {
         self.k.outer_view(i).expect("an unknown has a row").iter().map(|(j, &k)| term(k, j)).sum()
     }
-}
-
-/// Which of the wrong vertices are repaired in a step: all of them, where that makes progress.
-///
-/// On meshes where `K` is an M-matrix this ends by itself. Elsewhere, and with rounding at vertices that touch without
-/// pushing, a contact set can come back: then only the last wrong vertex is repaired in a step, which always ends (Murty's
-/// rule for positive definite matrices), until fewer are wrong than ever before (Judice, Pires, Comput. Oper. Res. 21
-/// (1994) 587).
-#[derive(Default)]
-struct Repair {
-    /// The fewest that were wrong.
-    fewest: Option<usize>,
-    single: bool,
-    /// Contact sets that were no progress.
-    seen: HashSet<u64>,
-}
-
-impl Repair {
-    fn apply(&mut self, active: &mut [bool], wrong: &[usize]) {
-        let progress = self.fewest.is_none_or(|fewest| wrong.len() < fewest);
-        self.single = !progress && (self.single || !self.seen.insert(fingerprint(active)));
-        if progress {
-            self.fewest = Some(wrong.len());
-        }
-        let repaired = if self.single { &wrong[wrong.len() - 1..] } else { wrong };
-        repaired.iter().for_each(|&i| active[i] = !active[i]);
-    }
-}
-
-/// Tells contact sets apart; two that are taken for one cost single repairs, no more.
-fn fingerprint(active: &[bool]) -> u64 {
-    let mut hasher = DefaultHasher::new();
-    active.hash(&mut hasher);
-    hasher.finish()
 }
 
 /// The vertices that touch, as displacements and multipliers have it.

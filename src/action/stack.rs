@@ -1,0 +1,53 @@
+//! The certificate of a stack, and its certified solution.
+
+mod chains;
+mod projection;
+mod residuals;
+mod solution;
+#[cfg(test)]
+mod tests;
+
+pub use solution::{GapSolution, StackSolution};
+
+use super::certificate::{Reason, Rejected};
+use crate::discretization::StackDiscretization;
+use crate::solver::StackCandidate;
+use chains::Chains;
+use projection::Projection;
+
+/// Checks a candidate against `K_i`, `F_i`, heights and obstacles and hands it out as a solution when every residual, beyond
+/// what rounding of the terms explains, is at most `tolerance`; see [`certify`](super::certify).
+///
+/// What is handed out is in its cones and complementary to the last bit: in each gap, at each vertex, the layers are apart and
+/// without action, or they touch. In place of Proposition 12, the independent check is the *block balance*: at every vertex, the
+/// forces on membranes that touch each other, but nothing that holds them, add up to zero.
+///
+/// # Errors
+/// As [`certify`](super::certify).
+pub fn certify_stack(
+    d: &StackDiscretization,
+    candidate: StackCandidate,
+    tolerance: f64,
+) -> Result<StackSolution, Box<Rejected>> {
+    let StackCandidate { displacement, multiplier, statistics } = candidate;
+    let lengths_fit = displacement.len() == d.membranes()
+        && displacement.iter().all(|u| u.len() == d.mesh().points().len())
+        && multiplier.len() == d.rows().len();
+    if !lengths_fit {
+        return Err(Box::new(Rejected { reason: Reason::Lengths, residuals: None, statistics }));
+    }
+    let chains = Chains::new(d);
+    let residuals = residuals::residuals(&chains, &displacement, &multiplier);
+    let worst =
+        residuals.named().into_iter().max_by(|p, q| p.1.beyond_rounding.total_cmp(&q.1.beyond_rounding));
+    match worst {
+        Some((check, residual)) if !(residual.beyond_rounding <= tolerance) => {
+            let reason = Reason::Residual { check, value: residual.value, tolerance };
+            Err(Box::new(Rejected { reason, residuals: Some(residuals), statistics }))
+        }
+        _ => {
+            let projection = Projection::new(&chains, displacement, &multiplier);
+            Ok(StackSolution::new(d, projection, residuals, statistics))
+        }
+    }
+}

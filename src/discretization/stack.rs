@@ -1,0 +1,325 @@
+//! A stack of membranes between obstacles on a mesh: everything that its discrete problem is made of.
+
+mod chain;
+mod error;
+mod fields;
+mod membrane;
+mod obstacles;
+mod scales;
+mod supports;
+#[cfg(test)]
+mod tests;
+
+use std::sync::Arc;
+
+use sprs::CsMat;
+
+use super::Scales;
+use crate::fem::weighted_stiffness;
+use crate::mesh::{Mesh, VertexTriangles};
+use crate::problem::ContactProblem;
+
+pub(crate) use chain::{Layer, Segment, segments};
+pub use error::StackError;
+pub use fields::IntegrationRule;
+use fields::{POSITIVE, means};
+use membrane::MembraneData;
+use obstacles::{check_order, obstacle};
+
+/// Displacements over vertices, one for each membrane from the top.
+pub type Displacements = Vec<Vec<f64>>;
+
+/// The discrete problem of a stack: the energy of each membrane, and a row for each gap and vertex.
+///
+/// From the top, layer 0 is the ceiling, `1 ..= N` are the membranes, `N + 1` is the floor; gap `k` lies between layers `k` and
+/// `k + 1`. Unknown are the displacements at all vertices where a membrane is not fixed. On a triangle the tension is its mean;
+/// the foundation is lumped with its mean: `C_i = diag(sum_K c_K |K| / 3)`, and belongs to `K_i`.
+#[derive(Debug, Clone)]
+pub struct StackDiscretization {
+    mesh: Arc<Mesh>,
+    membranes: Vec<MembraneData>,
+    /// The stiffness matrices of the tensions' profiles, on all vertices.
+    stiffness: Vec<CsMat<f64>>,
+    /// Ceiling and floor over vertices.
+    obstacles: [Option<Vec<f64>>; 2],
+    rows: Vec<GapRow>,
+    /// Where the rows of gap `k` begin, and where the last ones end.
+    row_start: Vec<usize>,
+    unknowns: usize,
+    dual_area: Vec<f64>,
+    scales: Scales,
+}
+
+/// Gap `gap` at a vertex, where at least one side is free: `u_upper - u_lower >= bound`; a side that is known is in the bound.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GapRow {
+    /// Between layers `gap` and `gap + 1`.
+    pub gap: usize,
+    /// The vertex.
+    pub vertex: usize,
+    /// The unknown of the upper layer, if it is one.
+    pub upper: Option<usize>,
+    /// The unknown of the lower layer, if it is one.
+    pub lower: Option<usize>,
+    /// Unit: length.
+    pub bound: f64,
+}
+
+impl StackDiscretization {
+    /// Assembles the discrete problem. Linear time and memory.
+    ///
+    /// # Errors
+    /// [`StackError`].
+    pub fn new(problem: &ContactProblem, mesh: impl Into<Arc<Mesh>>) -> Result<Self, StackError> {
+        Self::by_rule(problem, mesh, IntegrationRule::default())
+    }
+
+    /// Likewise, with tensions, loads and foundations integrated by another rule.
+    ///
+    /// # Errors
+    /// [`StackError`].
+    pub fn by_rule(
+        problem: &ContactProblem,
+        mesh: impl Into<Arc<Mesh>>,
+        rule: IntegrationRule,
+    ) -> Result<Self, StackError> {
+        let shared: Arc<Mesh> = mesh.into();
+        let mesh = &*shared;
+        let around = VertexTriangles::new(mesh.points().len(), mesh.triangles());
+        // |D_a| = |Delta_a| / 3 (4.17)
+        let dual_area: Vec<f64> = (0..mesh.points().len())
+            .map(|a| around.of(a).iter().map(|&t| mesh.triangle_area(t)).sum::<f64>() / 3.0)
+            .collect();
+        let mut profiles: Vec<Vec<f64>> = Vec::new();
+        let (mut membranes, mut unknowns) = (Vec::new(), 0);
+        let mut tensions = Vec::new();
+        for (k, membrane) in problem.membranes().iter().enumerate() {
+            let name = k + 1;
+            let tension = means(mesh, &membrane.tension, &format!("tension mu{name}"), rule, POSITIVE)?;
+            let (factor, profile) = profile(&mut profiles, &tension);
+            let data = MembraneData::new(mesh, &around, membrane, name, rule, (factor, profile), unknowns)?;
+            data.check_support(mesh, name)?;
+            unknowns += data.vertices.len();
+            membranes.push(data);
+            tensions.push(tension);
+        }
+        let stiffness: Vec<CsMat<f64>> =
+            profiles.iter().map(|mu| weighted_stiffness(mesh, &around, |t| mu[t])).collect();
+        let mut obstacles = [
+            obstacle(mesh, problem.ceiling(), "the ceiling", f64::min)?,
+            obstacle(mesh, problem.floor(), "the floor", f64::max)?,
+        ];
+        check_order(mesh, &membranes, &mut obstacles)?;
+        let scales = scales::scales(mesh, &membranes, &tensions, &obstacles, &dual_area);
+        scales::check_range(&scales, &tensions)?;
+        let mut stack = Self {
+            membranes,
+            stiffness,
+            obstacles,
+            rows: Vec::new(),
+            row_start: vec![0],
+            unknowns,
+            dual_area,
+            scales,
+            mesh: shared,
+        };
+        for gap in 0..=stack.membranes.len() {
+            let rows = (0..stack.dual_area.len()).filter_map(|a| stack.row_at(gap, a)).collect::<Vec<_>>();
+            stack.rows.extend(rows);
+            stack.row_start.push(stack.rows.len());
+        }
+        Ok(stack)
+    }
+
+    /// The mesh.
+    pub fn mesh(&self) -> &Arc<Mesh> {
+        &self.mesh
+    }
+
+    /// How many membranes there are, `N`.
+    pub fn membranes(&self) -> usize {
+        self.membranes.len()
+    }
+
+    /// Whether there is a ceiling, and a floor.
+    pub fn has_obstacles(&self) -> [bool; 2] {
+        [0, 1].map(|k| self.obstacles[k].is_some())
+    }
+
+    /// The gaps `k` between two layers that there are, in increasing order.
+    pub fn gaps(&self) -> Vec<usize> {
+        let last = self.membranes.len();
+        let [ceiling, floor] = self.has_obstacles();
+        (0..=last).filter(|&k| (k > 0 || ceiling) && (k < last || floor)).collect()
+    }
+
+    /// The rows, by gap and then by vertex.
+    pub fn rows(&self) -> &[GapRow] {
+        &self.rows
+    }
+
+    /// The rows of a gap.
+    pub(crate) fn rows_of(&self, gap: usize) -> std::ops::Range<usize> {
+        self.row_start[gap]..self.row_start[gap + 1]
+    }
+
+    /// How many unknowns there are in all membranes.
+    pub fn unknowns(&self) -> usize {
+        self.unknowns
+    }
+
+    /// The vertices at which membrane `i` (from 1) is free, in the order of its unknowns.
+    pub fn free_vertices(&self, i: usize) -> &[usize] {
+        &self.membranes[i - 1].vertices
+    }
+
+    /// The load vector `F_i` of membrane `i` (from 1) over vertices. Unit: force.
+    pub fn load(&self, i: usize) -> &[f64] {
+        &self.membranes[i - 1].load
+    }
+
+    /// `|D_a| = |Delta_a| / 3`, over vertices; zero at unused ones.
+    pub fn dual_area(&self) -> &[f64] {
+        &self.dual_area
+    }
+
+    /// The sizes that residuals are measured against.
+    pub fn scales(&self) -> Scales {
+        self.scales
+    }
+
+    /// Where the first unknown of membrane `i` (from 1) is.
+    pub(crate) fn first_unknown(&self, i: usize) -> usize {
+        self.membranes[i - 1].first
+    }
+
+    /// The unknown of membrane `i` (from 1) at a vertex.
+    pub(crate) fn unknown(&self, i: usize, a: usize) -> Option<usize> {
+        self.membranes[i - 1].number[a].map(|number| number as usize)
+    }
+
+    /// The height at which membrane `i` (from 1) is fixed at a vertex.
+    pub(crate) fn height(&self, i: usize, a: usize) -> Option<f64> {
+        self.membranes[i - 1].height[a]
+    }
+
+    /// Layer `layer` at vertex `a`.
+    pub(crate) fn layer(&self, layer: usize, a: usize) -> Layer {
+        let last = self.membranes.len() + 1;
+        if layer == 0 || layer == last {
+            let obstacle = &self.obstacles[usize::from(layer == last)];
+            return obstacle.as_ref().map_or(Layer::Absent, |heights| Layer::Known(heights[a]));
+        }
+        let membrane = &self.membranes[layer - 1];
+        match (membrane.number[a], membrane.height[a]) {
+            (Some(number), _) => Layer::Unknown(number as usize),
+            (None, Some(height)) => Layer::Known(height),
+            (None, None) => Layer::Absent,
+        }
+    }
+
+    /// The height of layer `layer` at vertex `a`, where there is one.
+    pub(crate) fn height_of_layer(&self, u: &[Vec<f64>], layer: usize, a: usize) -> Option<f64> {
+        match self.layer(layer, a) {
+            Layer::Absent => None,
+            Layer::Known(height) => Some(height),
+            Layer::Unknown(_) => Some(u[layer - 1][a]),
+        }
+    }
+
+    /// `u_k - u_(k+1)` at the vertex of a row.
+    pub(crate) fn gap(&self, u: &[Vec<f64>], row: &GapRow) -> f64 {
+        let [upper, lower] = [row.gap, row.gap + 1].map(|layer| self.height_of_layer(u, layer, row.vertex));
+        upper.zip(lower).map_or(f64::NAN, |(upper, lower)| upper - lower)
+    }
+
+    /// The columns and entries of row `a` of `K_i`, without the foundation.
+    pub(crate) fn stiffness_row(&self, i: usize, a: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let MembraneData { factor, profile, .. } = &self.membranes[i - 1];
+        let matrix = &self.stiffness[*profile];
+        let range = matrix.indptr().outer_inds_sz(a);
+        matrix.indices()[range.clone()]
+            .iter()
+            .copied()
+            .zip(matrix.data()[range].iter().map(move |k| factor * k))
+    }
+
+    /// `c_i |D_a|`, the entry that the foundation adds to the diagonal.
+    pub(crate) fn foundation(&self, i: usize, a: usize) -> f64 {
+        self.membranes[i - 1].foundation.as_ref().map_or(0.0, |foundation| foundation[a])
+    }
+
+    /// `(K_i)_aa`, with the foundation.
+    pub(crate) fn diagonal(&self, i: usize, a: usize) -> f64 {
+        self.stiffness_row(i, a).find(|&(b, _)| b == a).map_or(0.0, |(_, k)| k) + self.foundation(i, a)
+    }
+
+    /// `(K_i u)_a` for membrane `i` (from 1), and the size of the terms that cancel in it.
+    pub(crate) fn stiffness_times(&self, i: usize, a: usize, u: &[f64]) -> [f64; 2] {
+        let MembraneData { factor, profile, foundation, .. } = &self.membranes[i - 1];
+        let matrix = &self.stiffness[*profile];
+        let range = matrix.indptr().outer_inds_sz(a);
+        let [mut sum, mut terms] = [0.0; 2];
+        for (&b, k) in matrix.indices()[range.clone()].iter().zip(&matrix.data()[range]) {
+            sum += k * u[b];
+            terms += (k * u[b]).abs();
+        }
+        let on_foundation = foundation.as_ref().map_or(0.0, |foundation| foundation[a] * u[a]);
+        [factor * sum + on_foundation, factor * terms + on_foundation.abs()]
+    }
+
+    /// `(K_i u - F_i)_a`, likewise.
+    pub(crate) fn imbalance(&self, i: usize, a: usize, u: &[f64]) -> [f64; 2] {
+        let load = self.membranes[i - 1].load[a];
+        let [force, terms] = self.stiffness_times(i, a, u);
+        [force - load, terms + load.abs()]
+    }
+
+    /// All layers at vertex `a`, from the ceiling to the floor, written to `layers`.
+    pub(crate) fn layers_at(&self, a: usize, layers: &mut Vec<Layer>) {
+        layers.clear();
+        layers.extend((0..=self.membranes.len() + 1).map(|layer| self.layer(layer, a)));
+    }
+
+    /// Displacements over vertices from the values of the unknowns; heights where they are fixed.
+    pub(crate) fn extend(&self, x: &[f64]) -> Displacements {
+        let extended = |membrane: &MembraneData| {
+            let value = |(number, height): (&Option<u32>, &Option<f64>)| match number {
+                Some(number) => x[*number as usize],
+                None => height.unwrap_or(0.0),
+            };
+            membrane.number.iter().zip(&membrane.height).map(value).collect()
+        };
+        self.membranes.iter().map(extended).collect()
+    }
+
+    /// The values of the unknowns of displacements over vertices.
+    pub(crate) fn restrict(&self, u: &[Vec<f64>]) -> Vec<f64> {
+        let of = |(membrane, u): (&MembraneData, &Vec<f64>)| -> Vec<f64> {
+            membrane.vertices.iter().map(|&a| u[a]).collect()
+        };
+        self.membranes.iter().zip(u).flat_map(of).collect()
+    }
+
+    fn row_at(&self, gap: usize, a: usize) -> Option<GapRow> {
+        let (upper, lower, bound) = match [gap, gap + 1].map(|layer| self.layer(layer, a)) {
+            [Layer::Unknown(upper), Layer::Unknown(lower)] => (Some(upper), Some(lower), 0.0),
+            [Layer::Unknown(upper), Layer::Known(height)] => (Some(upper), None, height),
+            [Layer::Known(height), Layer::Unknown(lower)] => (None, Some(lower), -height),
+            _ => return None,
+        };
+        Some(GapRow { gap, vertex: a, upper, lower, bound })
+    }
+}
+
+/// A tension as a number times one of the profiles: membranes whose tensions are in proportion share one.
+fn profile(profiles: &mut Vec<Vec<f64>>, tension: &[f64]) -> (f64, usize) {
+    let factor = tension.first().copied().unwrap_or(1.0);
+    let is_that = |profile: &Vec<f64>| profile.iter().zip(tension).all(|(part, mu)| part * factor == *mu);
+    let known = profiles.iter().position(is_that).unwrap_or_else(|| {
+        let uniform = tension.iter().all(|mu| *mu == factor);
+        profiles.push(tension.iter().map(|mu| if uniform { 1.0 } else { mu / factor }).collect());
+        profiles.len() - 1
+    });
+    (factor, known)
+}

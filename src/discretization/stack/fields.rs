@@ -1,0 +1,249 @@
+//! Data over the domain on a mesh: integrals against hat functions, means on triangles, values at vertices.
+
+use super::error::{StackError, known};
+use crate::fem::integrals_on;
+use crate::mesh::{Mesh, VertexKind};
+use crate::problem::{Field, Function};
+
+/// How data are integrated over a triangle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum IntegrationRule {
+    /// Functions by quadrature of degree 4, as the loads of the paper's pair; values at vertices exactly.
+    #[default]
+    Quadrature,
+    /// From the values at the three corners: the mean is theirs, and the load vector is `f(a) |D_a|`. Published values of test
+    /// problems rest on this rule.
+    Vertices,
+}
+
+/// What a coefficient may be, and that in words.
+pub(super) type Allowed = (fn(f64) -> bool, &'static str);
+
+pub(super) const POSITIVE: Allowed = (|mu| mu > 0.0, "positive and finite");
+pub(super) const NOT_NEGATIVE: Allowed = (|c| c >= 0.0, "a finite number >= 0");
+
+/// A field that knows no regions, and the triangles on which it is the datum.
+struct Piece<'f> {
+    field: &'f Field,
+    triangles: Vec<usize>,
+}
+
+/// Which field is the datum on which triangles.
+fn pieces<'f>(mesh: &Mesh, field: &'f Field, datum: &str) -> Result<Vec<Piece<'f>>, StackError> {
+    let mut pieces = Vec::new();
+    divide(mesh, field, (0..mesh.triangles().len()).collect(), datum, &mut pieces)?;
+    Ok(pieces)
+}
+
+/// Divides the triangles on which `field` is the datum among its parts.
+fn divide<'f>(
+    mesh: &Mesh,
+    field: &'f Field,
+    triangles: Vec<usize>,
+    datum: &str,
+    pieces: &mut Vec<Piece<'f>>,
+) -> Result<(), StackError> {
+    let Field::ByRegion { parts, elsewhere } = field else {
+        pieces.push(Piece { field, triangles });
+        return Ok(());
+    };
+    const NOBODY: usize = usize::MAX;
+    let groups = mesh.groups();
+    let mut part_of = vec![NOBODY; mesh.triangles().len()];
+    for (k, (name, _)) in parts.iter().enumerate() {
+        let region = groups.region(name).ok_or_else(|| StackError::UnknownRegion {
+            datum: datum.into(),
+            name: name.clone(),
+            known: known(groups.regions(), "region"),
+        })?;
+        for t in region {
+            if part_of[t] != NOBODY {
+                let names = [parts[part_of[t]].0.clone(), name.clone()];
+                return Err(StackError::Overlap { datum: datum.into(), names, point: barycentre(mesh, t) });
+            }
+            part_of[t] = k;
+        }
+    }
+    let of_part = |k: usize| triangles.iter().copied().filter(|&t| part_of[t] == k).collect::<Vec<_>>();
+    for (k, (_, field)) in parts.iter().enumerate() {
+        divide(mesh, field, of_part(k), datum, pieces)?;
+    }
+    match (elsewhere, of_part(NOBODY)) {
+        (_, rest) if rest.is_empty() => Ok(()),
+        (Some(field), rest) => divide(mesh, field, rest, datum, pieces),
+        (None, rest) => Err(StackError::NotCovered { datum: datum.into(), point: barycentre(mesh, rest[0]) }),
+    }
+}
+
+fn barycentre(mesh: &Mesh, t: usize) -> [f64; 2] {
+    let [a, b, c] = mesh.corners(t);
+    [0, 1].map(|axis| (a[axis] + b[axis] + c[axis]) / 3.0)
+}
+
+fn check_length(datum: &str, found: usize, expected: usize, of: &'static str) -> Result<(), StackError> {
+    if found == expected {
+        return Ok(());
+    }
+    Err(StackError::Length { datum: datum.into(), found, expected, of })
+}
+
+/// A field on the triangles of a piece.
+enum OnTriangles {
+    /// One value each.
+    Values(Vec<f64>),
+    /// `int_K f phi_i` for the three corners of each.
+    Integrals(Vec<[f64; 3]>),
+}
+
+impl Piece<'_> {
+    fn on_triangles(
+        &self,
+        mesh: &Mesh,
+        datum: &str,
+        rule: IntegrationRule,
+    ) -> Result<OnTriangles, StackError> {
+        let Self { field, triangles } = self;
+        let third = |t: usize| mesh.triangle_area(t) / 3.0;
+        Ok(match (*field, rule) {
+            (Field::Everywhere(Function::Constant(value)), _) => {
+                OnTriangles::Values(vec![*value; triangles.len()])
+            }
+            (Field::PerTriangle(values), _) => {
+                check_length(datum, values.len(), mesh.triangles().len(), "triangles")?;
+                OnTriangles::Values(triangles.iter().map(|&t| values[t]).collect())
+            }
+            (Field::Everywhere(function), IntegrationRule::Quadrature) => {
+                let integrals = integrals_on(mesh, triangles, function);
+                OnTriangles::Integrals(
+                    integrals.map_err(|source| StackError::Evaluation { datum: datum.into(), source })?,
+                )
+            }
+            (Field::PerVertex(_), IntegrationRule::Quadrature) => {
+                let corners = self.at_corners(mesh, datum)?;
+                let integrals = |(&t, at): (&usize, [f64; 3])| {
+                    let sum = at.iter().sum::<f64>();
+                    at.map(|value| third(t) * 0.25 * (value + sum))
+                };
+                OnTriangles::Integrals(triangles.iter().zip(corners).map(integrals).collect())
+            }
+            (_, IntegrationRule::Vertices) => {
+                let corners = self.at_corners(mesh, datum)?;
+                let integrals = |(&t, at): (&usize, [f64; 3])| at.map(|value| third(t) * value);
+                OnTriangles::Integrals(triangles.iter().zip(corners).map(integrals).collect())
+            }
+            (Field::ByRegion { .. }, _) => unreachable!("pieces know no regions"),
+        })
+    }
+
+    /// The values at the corners of the triangles.
+    fn at_corners(&self, mesh: &Mesh, datum: &str) -> Result<Vec<[f64; 3]>, StackError> {
+        let mut around: Vec<usize> = self.triangles.iter().flat_map(|&t| mesh.triangles()[t]).collect();
+        around.sort_unstable();
+        around.dedup();
+        let mut at_vertex = vec![0.0; mesh.points().len()];
+        let values = at_vertices(mesh, self.field, &around, datum, f64::max)?;
+        around.iter().zip(values).for_each(|(&a, value)| at_vertex[a] = value);
+        Ok(self.triangles.iter().map(|&t| mesh.triangles()[t].map(|a| at_vertex[a])).collect())
+    }
+}
+
+/// `int_K f phi_i` for the three corners of each triangle `K`. Shape: `triangles x 3`.
+pub(super) fn integrals(
+    mesh: &Mesh,
+    field: &Field,
+    datum: &str,
+    rule: IntegrationRule,
+) -> Result<Vec<[f64; 3]>, StackError> {
+    let mut integrals = vec![[0.0; 3]; mesh.triangles().len()];
+    for piece in pieces(mesh, field, datum)? {
+        match piece.on_triangles(mesh, datum, rule)? {
+            // As the constant load of the paper's pair, to the last bit.
+            OnTriangles::Values(values) => {
+                for (&t, value) in piece.triangles.iter().zip(values) {
+                    integrals[t] = [value * mesh.triangle_area(t) / 3.0; 3];
+                }
+            }
+            OnTriangles::Integrals(found) => {
+                piece.triangles.iter().zip(found).for_each(|(&t, found)| integrals[t] = found);
+            }
+        }
+    }
+    Ok(integrals)
+}
+
+/// The means on the triangles, of what `is_allowed`; a number is itself. Shape: `triangles`.
+pub(super) fn means(
+    mesh: &Mesh,
+    field: &Field,
+    datum: &str,
+    rule: IntegrationRule,
+    (is_allowed, must): Allowed,
+) -> Result<Vec<f64>, StackError> {
+    let mut means = vec![0.0; mesh.triangles().len()];
+    for piece in pieces(mesh, field, datum)? {
+        match piece.on_triangles(mesh, datum, rule)? {
+            OnTriangles::Values(values) => {
+                piece.triangles.iter().zip(values).for_each(|(&t, value)| means[t] = value);
+            }
+            OnTriangles::Integrals(found) => {
+                for (&t, integrals) in piece.triangles.iter().zip(found) {
+                    means[t] = integrals.iter().sum::<f64>() / mesh.triangle_area(t);
+                }
+            }
+        }
+        if let Some(&t) = piece.triangles.iter().find(|&&t| !(is_allowed(means[t]) && means[t].is_finite())) {
+            return Err(StackError::Coefficient {
+                datum: datum.into(),
+                value: means[t],
+                point: barycentre(mesh, t),
+                must,
+            });
+        }
+    }
+    Ok(means)
+}
+
+/// The values at the given vertices; where regions meet that have values of their own, the `stricter` of them.
+pub(super) fn at_vertices(
+    mesh: &Mesh,
+    field: &Field,
+    vertices: &[usize],
+    datum: &str,
+    stricter: fn(f64, f64) -> f64,
+) -> Result<Vec<f64>, StackError> {
+    match field {
+        Field::Everywhere(function) => {
+            let [x, y] =
+                [0, 1].map(|axis| vertices.iter().map(|&a| mesh.points()[a][axis]).collect::<Vec<f64>>());
+            let mut values = vec![0.0; vertices.len()];
+            function
+                .eval_many(&x, &y, &mut values)
+                .map_err(|source| StackError::Evaluation { datum: datum.into(), source })?;
+            Ok(values)
+        }
+        Field::PerVertex(values) => {
+            check_length(datum, values.len(), mesh.points().len(), "vertices")?;
+            Ok(vertices.iter().map(|&a| values[a]).collect())
+        }
+        Field::PerTriangle(_) => Err(StackError::NotAtVertices { datum: datum.into() }),
+        Field::ByRegion { .. } => {
+            let mut strictest = vec![None::<f64>; mesh.points().len()];
+            let mut is_wanted = vec![false; mesh.points().len()];
+            vertices.iter().for_each(|&a| is_wanted[a] = true);
+            for Piece { field, triangles } in pieces(mesh, field, datum)? {
+                let mut around: Vec<usize> = triangles
+                    .iter()
+                    .flat_map(|&t| mesh.triangles()[t])
+                    .filter(|&a| is_wanted[a] && mesh.kind()[a] != VertexKind::Unused)
+                    .collect();
+                around.sort_unstable();
+                around.dedup();
+                for (&a, value) in around.iter().zip(at_vertices(mesh, field, &around, datum, stricter)?) {
+                    strictest[a] = Some(strictest[a].map_or(value, |other| stricter(other, value)));
+                }
+            }
+            Ok(vertices.iter().map(|&a| strictest[a].unwrap_or(0.0)).collect())
+        }
+    }
+}

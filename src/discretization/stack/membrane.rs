@@ -1,0 +1,100 @@
+//! One membrane of a stack on a mesh.
+
+use super::error::StackError;
+use super::fields::{IntegrationRule, NOT_NEGATIVE, integrals, means};
+use super::supports::Held;
+use crate::mesh::{Mesh, VertexKind, VertexTriangles, corner_of};
+use crate::parallel::prelude::*;
+use crate::problem::Membrane;
+
+/// One membrane on the mesh.
+#[derive(Debug, Clone)]
+pub(crate) struct MembraneData {
+    /// `K_i = factor * stiffness[profile] + diag(foundation)`.
+    pub(super) factor: f64,
+    pub(super) profile: usize,
+    pub(super) foundation: Option<Vec<f64>>,
+    /// `F_i` over vertices, line loads included. Unit: force.
+    pub(super) load: Vec<f64>,
+    /// The height at vertices where it is fixed.
+    pub(super) height: Vec<Option<f64>>,
+    /// The number of the unknown at each vertex, where there is one.
+    pub(super) number: Vec<Option<u32>>,
+    /// The vertices with an unknown, in increasing order; they are numbered from `first`.
+    pub(super) vertices: Vec<usize>,
+    pub(super) first: usize,
+}
+
+impl MembraneData {
+    pub(super) fn new(
+        mesh: &Mesh,
+        around: &VertexTriangles,
+        membrane: &Membrane,
+        name: usize,
+        rule: IntegrationRule,
+        (factor, profile): (f64, usize),
+        first: usize,
+    ) -> Result<Self, StackError> {
+        let held = Held::new(mesh, membrane, name)?;
+        let foundation = match membrane.foundation.constant() {
+            Some(0.0) => None,
+            _ => Some(means(mesh, &membrane.foundation, &format!("foundation c{name}"), rule, NOT_NEGATIVE)?),
+        };
+        let over_vertices = |term: &(dyn Fn(usize, usize) -> f64 + Sync)| -> Vec<f64> {
+            let at = |a: usize| around.of(a).iter().map(|&t| term(t, a)).sum();
+            (0..mesh.points().len()).into_par_iter().map(at).collect()
+        };
+        let integrals = integrals(mesh, &membrane.load, &format!("load f{name}"), rule)?;
+        let mut load = over_vertices(&|t, a| integrals[t][corner_of(mesh.triangles()[t], a)]);
+        load.iter_mut().zip(&held.line_load).for_each(|(load, line)| *load += line);
+        let is_free = |a: &usize| mesh.kind()[*a] != VertexKind::Unused && held.height[*a].is_none();
+        let vertices: Vec<usize> = (0..mesh.points().len()).filter(is_free).collect();
+        let mut number = vec![None; mesh.points().len()];
+        for (k, &a) in vertices.iter().enumerate() {
+            number[a] = Some(u32::try_from(first + k).expect("fewer than 2^32 unknowns"));
+        }
+        Ok(Self {
+            factor,
+            profile,
+            foundation: foundation.map(|c| over_vertices(&|t, _| c[t] * mesh.triangle_area(t) / 3.0)),
+            load,
+            height: held.height,
+            number,
+            vertices,
+            first,
+        })
+    }
+
+    /// Every connected part of the mesh has a vertex where the membrane is fixed, or a foundation.
+    pub(super) fn check_support(&self, mesh: &Mesh, name: usize) -> Result<(), StackError> {
+        let parts = connected_parts(mesh);
+        let holds =
+            |a: usize| self.height[a].is_some() || self.foundation.as_ref().is_some_and(|c| c[a] > 0.0);
+        let mut is_held = vec![false; mesh.points().len()];
+        (0..parts.len()).filter(|&a| holds(a)).for_each(|a| is_held[parts[a]] = true);
+        let loose = (0..parts.len()).find(|&a| mesh.kind()[a] != VertexKind::Unused && !is_held[parts[a]]);
+        match loose {
+            Some(a) => Err(StackError::Unsupported { membrane: name, point: mesh.points()[a] }),
+            None => Ok(()),
+        }
+    }
+}
+
+/// A vertex that stands for the connected part of the mesh in which each vertex lies.
+fn connected_parts(mesh: &Mesh) -> Vec<usize> {
+    let mut parent: Vec<usize> = (0..mesh.points().len()).collect();
+    fn root(parent: &mut [usize], mut a: usize) -> usize {
+        while parent[a] != a {
+            parent[a] = parent[parent[a]];
+            a = parent[a];
+        }
+        a
+    }
+    for &[a, b, c] in mesh.triangles() {
+        for [a, b] in [[a, b], [b, c]] {
+            let (a, b) = (root(&mut parent, a), root(&mut parent, b));
+            parent[a.max(b)] = a.min(b);
+        }
+    }
+    (0..parent.len()).map(|a| root(&mut parent, a)).collect()
+}
