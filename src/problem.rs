@@ -37,6 +37,8 @@ pub use membrane::{Membrane, Support};
 pub use pair::{ContactProblemBuilder, Pair};
 pub use stack::StackBuilder;
 
+use std::collections::HashSet;
+
 use thiserror::Error;
 
 use crate::text::Number;
@@ -137,13 +139,8 @@ impl ContactProblem {
 
 /// In the order in which they come first.
 fn each_once<'n>(names: impl Iterator<Item = &'n str>) -> Vec<&'n str> {
-    let mut found: Vec<&str> = Vec::new();
-    for name in names {
-        if !found.contains(&name) {
-            found.push(name);
-        }
-    }
-    found
+    let mut seen = HashSet::new();
+    names.filter(|name| seen.insert(*name)).collect()
 }
 
 impl ExactSolution {
@@ -196,6 +193,8 @@ pub enum ProblemError {
     /// A height, a line load or an obstacle that is no finite number.
     #[error("{datum} is {}: give a finite number", Number(*value))]
     NotFinite {
+        /// Of which membrane, counted from 1 at the top; `None` for an obstacle.
+        membrane: Option<usize>,
         /// Which datum.
         datum: String,
         /// The value given.

@@ -46,7 +46,7 @@ impl StackBuilder {
         }
         for (name, obstacle) in [("the ceiling", &ceiling), ("the floor", &floor)] {
             if let Some(value) = obstacle.iter().flat_map(|field| field.numbers()).find(|v| !v.is_finite()) {
-                return Err(ProblemError::NotFinite { datum: name.into(), value });
+                return Err(ProblemError::NotFinite { membrane: None, datum: name.into(), value });
             }
         }
         let pair = match membranes.as_slice() {
@@ -80,7 +80,7 @@ fn check(i: usize, membrane: &Membrane) -> Result<(), ProblemError> {
             Support::Free { .. } => continue,
         };
         if let Some(value) = value {
-            return Err(ProblemError::NotFinite { datum: format!("{datum}{i}"), value });
+            return Err(ProblemError::NotFinite { membrane: Some(i), datum: format!("{datum}{i}"), value });
         }
     }
     Ok(())

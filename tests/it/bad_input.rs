@@ -64,6 +64,24 @@ size = 0.5
 min_angle = 25
 "#;
 
+/// The same problem as the first, with a table for each membrane.
+const TABLES: &str = r#"
+[[membrane]]
+tension = 1.0
+load = -15
+height = "0.1 + 0.05*x"
+
+[[membrane]]
+tension = 3.0
+load = "10*sin(pi*x)"
+
+[domain]
+shape = "square"
+
+[mesh]
+cells = 4
+"#;
+
 /// A mesh from a file.
 const GMSH: &str = r#"
 [membranes]
@@ -116,7 +134,8 @@ const BAD_SYNTAX: &[Fault] = &[
 const BAD_KEYS: &[Fault] = &[
     ("title", "tilte", &["`tilte`", "nearest is `title`"]),
     ("title", "\"ti\\ntle\"", &["`ti\\ntle`", "nearest is `title`"]),
-    ("[membranes]", "[membrane]", &["`membrane`", "nearest is `membranes`"]),
+    ("[membranes]", "[membrane]", &["`membrane` must be a list of tables", "[membranes] for a pair"]),
+    ("[membranes]", "[membrnaes]", &["`membrnaes`", "nearest is `membranes`"]),
     ("tension", "tensoin", &["`membranes.tensoin`", "nearest is `tension`"]),
     ("height", "hieght", &["`membranes.hieght`", "nearest is `height`"]),
     ("[domain]", "[domian]", &["`domian`", "nearest is `domain`"]),
@@ -169,6 +188,22 @@ const BAD_MEMBRANES: &[Fault] = &[
     ("10*sin(pi*x)", "1/(x - x)", &["f2", "inf at the point (", "finite"]),
     ("10*sin(pi*x)", "ln(x - 0.5)", &["f2", "NaN at the point (", "finite"]),
 ];
+
+const BAD_TABLES: &[Fault] = &[
+    ("[domain]", "[obstacle]\n[domain]", &["`obstacle` is empty", "add `floor"]),
+    ("tension = 3.0", "tensoin = 3.0", &["`membrane[2].tensoin`", "nearest is `tension`"]),
+    ("1.0", "{ steel = true }", &["`membrane[1].tension.steel`", "number or an expression"]),
+    ("tension = 3.0", "tension = 3.0\ntraction = 1", &["`membrane[2].traction`", "no free curve"]),
+    ("3.0", "-3.0", &["membrane[2]: tension mu2 is -3", "positive"]),
+    ("0.1 + 0.05*x", "-0.1", &["g is -0.1", ">= 0"]),
+    // What is no pair is not solved yet.
+    ("3.0", "\"3 + x\"", FOR_A_PAIR),
+    ("tension = 3.0", "tension = 3.0\nheight = { left = \"free\" }", FOR_A_PAIR),
+    ("[domain]", "[obstacle]\nfloor = -1\n[domain]", FOR_A_PAIR),
+    ("[domain]", "[[membrane]]\ntension = 1\n[domain]", FOR_A_PAIR),
+];
+
+const FOR_A_PAIR: &[&str] = &["for a pair only", "two membranes of constant tension"];
 
 const BAD_SOLVER: &[Fault] = &[
     ("1e-8", "0", &["`solver.tolerance` = 0", "between 0 and 1"]),
@@ -299,6 +334,12 @@ const BAD_ARGUMENTS: &[(&str, &[&str], &str)] = &[
     ("check case.toml --refine -1", &["'--refine <N>'", "at least 0"], "check case.toml --refine 1"),
     ("check case.toml --refine 30", &["30 refinements", "refine less"], "check case.toml --refine 1"),
     ("export case.toml", &["--format"], "export case.toml --format qps"),
+    ("export floor.toml --format qps", FOR_A_PAIR, "export case.toml --format qps"),
+    ("check floor.toml", FOR_A_PAIR, "check case.toml"),
+    ("check floor.toml --answer answer.npz", FOR_A_PAIR, "check case.toml"),
+    ("bench floor.toml --levels 1", FOR_A_PAIR, "bench disk.toml --levels 1"),
+    ("adapt floor.toml --tolerance 0.5", FOR_A_PAIR, "adapt disk.toml --max-vertices 100 --tolerance 0.9"),
+    ("converge floor.toml --levels 1", &["a known solution", "`case"], "converge disk.toml --levels 1"),
     ("export case.toml --format qpx", &["'qpx'", "qps, npz, mtx"], "export case.toml --format qps"),
     (
         "export case.toml --format qps --out file",
@@ -413,6 +454,7 @@ fn every_fault_in_a_file_is_refused_in_one_line_and_without_it_the_file_is_accep
         (SQUARE, "case.toml", BAD_SYNTAX),
         (SQUARE, "case.toml", BAD_KEYS),
         (SQUARE, "case.toml", BAD_MEMBRANES),
+        (TABLES, "case.toml", BAD_TABLES),
         (SQUARE, "case.toml", BAD_SOLVER),
         (SQUARE, "case.toml", BAD_MESH),
         (DISK, "case.toml", BAD_CASE),
@@ -423,7 +465,7 @@ fn every_fault_in_a_file_is_refused_in_one_line_and_without_it_the_file_is_accep
     let complaints = groups.map(|(case, edited, faults)| complaints_about(case, edited, faults)).concat();
     assert!(complaints.is_empty(), "{}", complaints.join("\n"));
 
-    for case in [SQUARE, DISK, POLYGON, GMSH] {
+    for case in [SQUARE, TABLES, DISK, POLYGON, GMSH] {
         let folder = folder_with(case, MESH);
         let run = run(folder.path(), "solve case.toml --out results");
         assert_eq!((run.code, run.stderr.as_str()), (Some(0), ""), "{case}");
@@ -436,6 +478,7 @@ fn bad_arguments_are_refused_in_one_line_and_corrected_ones_accepted() {
     let write = |name: &str, bytes: &[u8]| fs::write(folder.path().join(name), bytes).unwrap();
     write("file", b"not a folder");
     write("disk.toml", DISK.as_bytes());
+    write("floor.toml", TABLES.replace("[domain]", "[obstacle]\nfloor = -1\n[domain]").as_bytes());
     write("latin1.toml", b"title = \"Stra\xdfe\"");
     let deep = format!("{}x{}", "(1 + ".repeat(1000), ")".repeat(1000));
     write("deep.toml", SQUARE.replace("-15.0", &format!("{deep:?}")).as_bytes());

@@ -53,6 +53,20 @@ fn the_case_file_that_the_readme_shows_is_valid() {
 }
 
 #[test]
+fn the_case_file_that_the_documentation_shows_has_every_key() {
+    let page = include_str!("../../docs/case_file.md");
+    let block = shown_after(page, "```toml").join("\n");
+    let parse = |text: &str| CaseFile::parse("page.toml", text, Path::new("page.toml"));
+    assert!(parse(&block).is_ok(), "{:?}", parse(&block).err());
+    let keys = page.lines().filter_map(|line| line.strip_prefix("| `")?.split('`').next());
+    let keys: Vec<&str> = keys.collect();
+    assert_eq!(keys, ["tension", "load", "foundation", "height", "traction", "floor", "ceiling"]);
+    for key in keys {
+        assert!(parse(&block.replace(key, "unknown")).is_err(), "{key}");
+    }
+}
+
+#[test]
 fn a_changed_figure_would_be_seen() {
     assert_ne!(comparable("  energy       1.59318267"), comparable("  energy       1.59318268"));
     assert_eq!(comparable("  seconds      mesh 0.00"), comparable("  seconds      mesh 1.00"));

@@ -1,12 +1,19 @@
-//! The problem: a built-in case with its parameters, or `[membranes]`.
+//! The problem: a built-in case with its parameters, the pair of `[membranes]`, or the stack of `[[membrane]]`.
+
+mod boundary;
+mod field;
+mod pair;
+mod stack;
+#[cfg(test)]
+mod tests;
 
 use std::collections::BTreeMap;
 
-use toml::Value;
-
-use super::section::{Section, as_number};
+use self::pair::pair;
+use self::stack::stack;
+use super::section::Section;
 use crate::cli::failure::Failure;
-use crate::problem::{Case, ContactProblem, ExactSolution, Expression, Function};
+use crate::problem::{Case, ContactProblem, ExactSolution};
 use crate::text::excerpt;
 
 /// `case = "..."` and `[parameters]`.
@@ -27,61 +34,40 @@ pub(super) fn exact_case(top: &mut Section) -> Result<Option<ExactSolution>, Fai
     case.solution(&parameters).map(Some).map_err(|error| top.table_error(format!("[parameters]: {error}")))
 }
 
-/// `[membranes]`, or the problem of the built-in case.
+/// `[membranes]`, or `[[membrane]]` and `[obstacle]`, or the problem of the built-in case.
 pub(super) fn problem(top: &mut Section, exact: Option<&ExactSolution>) -> Result<ContactProblem, Failure> {
-    let mut section = top.section("membranes")?;
-    if let Some(exact) = exact {
-        if !section.is_empty() {
-            return Err(top.error("membranes", "contradicts `case`: remove one of the two"));
+    if top.is_list("membranes") {
+        return Err(top.error("membranes", "is one table for a pair: write [[membrane]] for one a membrane"));
+    }
+    let both = top.section("membranes")?;
+    let remedy = "write [[membrane]] before each, from the top, or [membranes] for a pair";
+    let membranes = top.sections("membrane", remedy)?;
+    let obstacle = top.optional_section("obstacle")?;
+    let new_form = [("membrane", membranes.is_some()), ("obstacle", obstacle.is_some())];
+    let new_form = new_form.into_iter().find_map(|(key, is_there)| is_there.then_some(key));
+    let old_form = (!both.is_empty()).then_some("membranes");
+    match (exact, old_form, new_form) {
+        (Some(exact), None, None) => {
+            exact.problem().map_err(|error| top.table_error(format!("[parameters]: {error}")))
         }
-        return exact.problem().map_err(|error| top.table_error(format!("[parameters]: {error}")));
-    }
-    if section.is_empty() {
-        let remedy = "add a table [membranes] with tension, load, height, or `case = \"...\"`";
-        return Err(top
-            .misspelt(&["membranes", "case"])
-            .unwrap_or_else(|| top.table_error(format!("there is no problem: {remedy}"))));
-    }
-    let [mu1, mu2] =
-        pair(&mut section, "tension", &|value| as_number(value).ok_or("must be a number".into()))?
-            .ok_or_else(|| section.missing("tension", "add `tension = [mu1, mu2]`"))?;
-    let [f1, f2] = pair(&mut section, "load", &function)?
-        .ok_or_else(|| section.missing("load", "add `load = [f1, f2]`, numbers or expressions in x and y"))?;
-    let height = section
-        .take("height")
-        .map(|value| function(&value).map_err(|problem| section.error("height", problem)))
-        .transpose()?
-        .unwrap_or(Function::Constant(0.0));
-    let problem = ContactProblem::builder().tension(mu1, mu2).load(f1, f2).height(height).build();
-    let problem = problem.map_err(|error| section.table_error(format!("[membranes]: {error}")))?;
-    section.finish()?;
-    Ok(problem)
-}
-
-/// Two values, one for each membrane.
-fn pair<T>(
-    section: &mut Section,
-    key: &'static str,
-    convert: &dyn Fn(&Value) -> Result<T, String>,
-) -> Result<Option<[T; 2]>, Failure> {
-    let Some(value) = section.take(key) else { return Ok(None) };
-    let Some([first, second]) = value.as_array().map(Vec::as_slice) else {
-        return Err(section.error(key, "must have two entries, one for each membrane: [first, second]"));
-    };
-    let convert = |k: usize, value: &Value| {
-        convert(value).map_err(|problem| section.error(&format!("{key}[{k}]"), problem))
-    };
-    Ok(Some([convert(1, first)?, convert(2, second)?]))
-}
-
-/// A number or an expression.
-fn function(value: &Value) -> Result<Function, String> {
-    match value {
-        Value::String(source) => Expression::parse(source)
-            .map(Function::from)
-            .map_err(|error| format!("is no expression: {error}")),
-        _ => as_number(value)
-            .map(Function::Constant)
-            .ok_or("must be a number or an expression in quotes".into()),
+        (Some(_), Some(key), _) | (Some(_), None, Some(key)) => {
+            Err(top.error(key, "contradicts `case`: remove one of the two"))
+        }
+        (None, Some(_), None) => pair(both),
+        (None, Some(_), Some("membrane")) => {
+            Err(top.error("membrane", "contradicts `membranes`: remove one of the two"))
+        }
+        (None, Some(_), Some(key)) => {
+            let remedy = "write the two of [membranes] as [[membrane]], from the top";
+            Err(top.error(key, format!("does not go with `membranes`: {remedy}")))
+        }
+        (None, None, Some(_)) => stack(top, membranes, obstacle),
+        (None, None, None) => {
+            let remedy =
+                "add a table [membranes] with tension, load, height, or [[membrane]], or `case = \"...\"`";
+            Err(top
+                .misspelt(&["membranes", "membrane", "case"])
+                .unwrap_or_else(|| top.table_error(format!("there is no problem: {remedy}"))))
+        }
     }
 }

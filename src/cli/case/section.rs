@@ -29,15 +29,38 @@ impl Section {
 
     /// A table in this one; an empty one when it is missing.
     pub(crate) fn section(&mut self, key: &'static str) -> Result<Self, Failure> {
-        let table = match self.take(key) {
-            None => Table::new(),
-            Some(Value::Table(table)) => table,
-            Some(_) => {
-                return Err(self.error(key, format!("must be a table: write [{key}] on a line of its own")));
-            }
+        Ok(self.optional_section(key)?.unwrap_or_else(|| self.below(key, Table::new())))
+    }
+
+    /// A table in this one, if it is there.
+    pub(crate) fn optional_section(&mut self, key: &'static str) -> Result<Option<Self>, Failure> {
+        match self.take(key) {
+            None => Ok(None),
+            Some(Value::Table(table)) => Ok(Some(self.below(key, table))),
+            Some(_) => Err(self.error(key, format!("must be a table: write [{key}] on a line of its own"))),
+        }
+    }
+
+    /// The tables of a list in this one, `[[key]]`, if it is there. The remedy is for what is no such list.
+    pub(crate) fn sections(&mut self, key: &'static str, remedy: &str) -> Result<Option<Vec<Self>>, Failure> {
+        let Some(value) = self.take(key) else { return Ok(None) };
+        let must = || self.error(key, format!("must be a list of tables: {remedy}"));
+        let Value::Array(values) = value else { return Err(must()) };
+        let section = |(k, value)| match value {
+            Value::Table(table) => Ok(self.below(&format!("{key}[{}]", k + 1), table)),
+            _ => Err(must()),
         };
+        values.into_iter().enumerate().map(section).collect::<Result<_, _>>().map(Some)
+    }
+
+    fn below(&self, key: &str, table: Table) -> Self {
         let prefix = format!("{}{key}.", self.prefix);
-        Ok(Self { file: self.file.clone(), prefix, table, known: Vec::new() })
+        Self { file: self.file.clone(), prefix, table, known: Vec::new() }
+    }
+
+    /// Whether the value of a key that is still to be read is a list.
+    pub(crate) fn is_list(&self, key: &str) -> bool {
+        self.table.get(key).is_some_and(Value::is_array)
     }
 
     /// The value of a key that this table may have.

@@ -64,6 +64,7 @@ pub(crate) fn run(arguments: &AdaptArguments, watch: &Watch) -> Result<(), Failu
     if let Some(name) = arguments.backend {
         setup.case.solver.name = name;
     }
+    setup.require_pair()?;
     setup.check_memory(setup.case.solver.name)?;
     check_first_mesh(&setup, arguments.max_vertices)?;
     // Nobody may find a folder of which the run says that nothing was written.

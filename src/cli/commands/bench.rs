@@ -165,8 +165,9 @@ impl<'a> Bench<'a> {
         let levels = bench.levels;
         let memory_limit = bench.memory_limit;
         let arguments = CaseArguments { path, refine: 0, memory_limit, quiet: false };
-        let Setup { name, id, case, mut family, groups, node_tags, .. } =
-            Setup::new(&arguments, self.progress)?;
+        let setup = Setup::new(&arguments, self.progress)?;
+        setup.require_pair()?;
+        let Setup { name, id, case, mut family, groups, node_tags, .. } = setup;
         let finest = check_refinements(&name, family.mesh().points().len() as f64, levels - 1)?;
         self.check_memory(&name, finest)?;
         (self.groups, self.node_tags) = (groups, node_tags);

@@ -39,7 +39,7 @@ pub(crate) fn run(arguments: &ConvergeArguments, watch: &Watch) -> Result<(), Fa
     let mut setup = Setup::new(&arguments.case, &progress)?;
     let Some(exact) = setup.case.exact.take() else {
         let remedy =
-            "give `case = \"...\"` in place of [membranes] and [domain]; `membranes cases` lists them";
+            "give `case = \"...\"` in place of the membranes and [domain]; `membranes cases` lists them";
         return Err(Failure::Input(format!("{}: errors need a known solution: {remedy}", setup.name)));
     };
     if let Some(name) = arguments.backend {

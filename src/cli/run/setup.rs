@@ -59,6 +59,15 @@ impl Setup {
         self.case.refine + self.further
     }
 
+    /// Refuses another stack than the paper's pair.
+    pub(crate) fn require_pair(&self) -> Result<(), Failure> {
+        if self.case.problem.as_pair().is_some() {
+            return Ok(());
+        }
+        let pair = "two membranes of constant tension, held all around, the lower one at 0, without foundation or obstacle";
+        Err(Failure::Input(format!("{}: this command is for a pair only: pose {pair}", self.name)))
+    }
+
     /// Refuses a solver that needs more memory on this mesh than there is.
     pub(crate) fn check_memory(&self, name: SolverName) -> Result<(), Failure> {
         self.memory.check(&self.name, name, self.family.mesh().points().len() as f64)
@@ -66,6 +75,7 @@ impl Setup {
 
     /// Assembles the discrete problem, and says how long it took.
     pub(crate) fn discretize(&self, progress: &Progress) -> Result<(Discretization, Seconds), Failure> {
+        self.require_pair()?;
         progress.stage(format!("assembling on {} vertices", grouped(self.family.mesh().points().len())));
         let start = Instant::now();
         let d = Discretization::new(&self.case.problem, self.family.mesh().clone()).map_err(|error| {
