@@ -1,7 +1,92 @@
 //! Any number of membranes between obstacles.
 
+use std::collections::HashSet;
+
 use super::pair::Pair;
-use super::{ContactProblem, Field, Function, Membrane, ProblemError, Support};
+use super::{Field, Function, Membrane, ProblemError, Support};
+
+/// Membranes from the top, and the obstacles above and below them. Valid once built, then immutable.
+///
+/// ```
+/// use membrane_contact::problem::{ContactProblem, Membrane};
+///
+/// // The paper's pair.
+/// let pair = ContactProblem::pair([1.0, 3.0], [-15.0, 10.0], 0.1)?;
+/// assert_eq!(pair.as_pair().map(|pair| pair.tension()), Some([1.0, 3.0]));
+/// // A membrane over a floor.
+/// let sheet = Membrane::new(1.0).load(-10.0);
+/// let obstacle = ContactProblem::obstacle(sheet.clone(), -0.3)?;
+/// // Three membranes over it.
+/// let stack = ContactProblem::stack()
+///     .membrane(sheet.clone().height(0.2))
+///     .membrane(sheet.clone().height(0.1))
+///     .membrane(sheet)
+///     .floor(-0.3)
+///     .build()?;
+/// assert_eq!([&pair, &obstacle, &stack].map(|problem| problem.membranes().len()), [2, 1, 3]);
+/// # Ok::<(), membrane_contact::problem::ProblemError>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct ContactProblem {
+    membranes: Vec<Membrane>,
+    ceiling: Option<Field>,
+    floor: Option<Field>,
+    /// The same as the paper's pair, where it is one.
+    pair: Option<Pair>,
+}
+
+impl ContactProblem {
+    /// One membrane over a floor: the classical obstacle problem.
+    ///
+    /// # Errors
+    /// As [`StackBuilder::build`].
+    pub fn obstacle(membrane: Membrane, floor: impl Into<Field>) -> Result<Self, ProblemError> {
+        Self::stack().membrane(membrane).floor(floor).build()
+    }
+
+    /// Any number of membranes, added from the top.
+    pub fn stack() -> StackBuilder {
+        StackBuilder::default()
+    }
+
+    /// The membranes from the top.
+    pub fn membranes(&self) -> &[Membrane] {
+        &self.membranes
+    }
+
+    /// What no membrane is above.
+    pub fn ceiling(&self) -> Option<&Field> {
+        self.ceiling.as_ref()
+    }
+
+    /// What no membrane is below.
+    pub fn floor(&self) -> Option<&Field> {
+        self.floor.as_ref()
+    }
+
+    /// The data of the paper's pair, where it is one: two membranes without obstacles and foundations, of constant tensions,
+    /// under loads that are one function each, fixed all around at `g >= 0` and at 0.
+    pub fn as_pair(&self) -> Option<&Pair> {
+        self.pair.as_ref()
+    }
+
+    /// The names of the regions that its data ask for, each once.
+    pub fn regions(&self) -> Vec<&str> {
+        let obstacles = [&self.ceiling, &self.floor].into_iter().flatten().flat_map(Field::names);
+        each_once(self.membranes.iter().flat_map(Membrane::regions).chain(obstacles))
+    }
+
+    /// The names of the curves that its data ask for, each once.
+    pub fn curves(&self) -> Vec<&str> {
+        each_once(self.membranes.iter().flat_map(Membrane::curves))
+    }
+}
+
+/// In the order in which they come first.
+fn each_once<'n>(names: impl Iterator<Item = &'n str>) -> Vec<&'n str> {
+    let mut seen = HashSet::new();
+    names.filter(|name| seen.insert(*name)).collect()
+}
 
 /// Collects membranes from the top, and obstacles.
 #[derive(Debug, Clone, Default)]
