@@ -146,6 +146,11 @@ impl StackDiscretization {
         [0, 1].map(|k| self.obstacles[k].is_some())
     }
 
+    /// The heights of ceiling and floor over vertices.
+    pub fn obstacles(&self) -> [Option<&[f64]>; 2] {
+        [0, 1].map(|k| self.obstacles[k].as_deref())
+    }
+
     /// The gaps `k` between two layers that there are, in increasing order.
     pub fn gaps(&self) -> Vec<usize> {
         let last = self.membranes.len();
