@@ -4,6 +4,7 @@ mod checkpoint;
 mod dual;
 mod file;
 mod flux;
+mod stack;
 mod summary;
 mod vtu;
 
@@ -11,5 +12,6 @@ pub use checkpoint::{read_checkpoint, write_checkpoint};
 pub use dual::write_dual_vtu;
 pub use file::{FileSet, WriteSeek, discard_unfinished, prepare_folder, remove, write_atomically};
 pub use flux::write_flux_vtu;
-pub use summary::{PolishSummary, ResidualSummary, Seconds, Summary};
+pub use stack::write_stack_vtu;
+pub use summary::{ContactSummary, PolishSummary, ResidualSummary, Seconds, Summary};
 pub use vtu::write_vtu;

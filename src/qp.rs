@@ -34,7 +34,7 @@ pub use answer::Answer;
 pub use backend::{BackendError, QpBackend, QpOptions, QpSolution};
 pub use contact::{contact_qp, stack_qp};
 #[cfg(feature = "files")]
-pub use export::{QpPart, write_matrix_market, write_npz, write_qps};
+pub use export::{QpPart, write_matrix_market, write_npz, write_qps, write_stack_npz};
 #[cfg(feature = "files")]
 pub use import::{AnswerError, Shape, read_answer};
 pub use kkt::KktResiduals;

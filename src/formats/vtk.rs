@@ -1,5 +1,6 @@
 //! VTK's XML format for unstructured grids: binary, compressed by zlib; ParaView, PyVista and meshio read it.
 
+use std::borrow::Cow;
 use std::io::{self, Write};
 
 use base64::Engine;
@@ -16,16 +17,16 @@ pub(crate) const VTK_POLYGON: u8 = 7;
 
 /// A named array of numbers, one for each point or cell.
 pub(crate) struct DataArray {
-    name: &'static str,
+    name: Cow<'static, str>,
     kind: &'static str,
     components: usize,
     bytes: Vec<u8>,
 }
 
 impl DataArray {
-    pub(crate) fn floats(name: &'static str, values: impl IntoIterator<Item = f64>) -> Self {
+    pub(crate) fn floats(name: impl Into<Cow<'static, str>>, values: impl IntoIterator<Item = f64>) -> Self {
         Self {
-            name,
+            name: name.into(),
             kind: "Float64",
             components: 1,
             bytes: values.into_iter().flat_map(f64::to_le_bytes).collect(),
@@ -33,17 +34,33 @@ impl DataArray {
     }
 
     /// Vectors of the plane, as VTK's three components.
-    pub(crate) fn vectors(name: &'static str, values: impl IntoIterator<Item = [f64; 2]>) -> Self {
+    pub(crate) fn vectors(
+        name: impl Into<Cow<'static, str>>,
+        values: impl IntoIterator<Item = [f64; 2]>,
+    ) -> Self {
         let components = values.into_iter().flat_map(|[x, y]| [x, y, 0.0]);
         Self { components: 3, ..Self::floats(name, components) }
     }
 
-    pub(crate) fn integers(name: &'static str, values: impl IntoIterator<Item = usize>) -> Self {
-        Self { name, kind: "Int64", components: 1, bytes: values.into_iter().flat_map(integer).collect() }
+    pub(crate) fn integers(
+        name: impl Into<Cow<'static, str>>,
+        values: impl IntoIterator<Item = usize>,
+    ) -> Self {
+        Self {
+            name: name.into(),
+            kind: "Int64",
+            components: 1,
+            bytes: values.into_iter().flat_map(integer).collect(),
+        }
     }
 
-    pub(crate) fn flags(name: &'static str, values: impl IntoIterator<Item = bool>) -> Self {
-        Self { name, kind: "UInt8", components: 1, bytes: values.into_iter().map(u8::from).collect() }
+    pub(crate) fn flags(name: impl Into<Cow<'static, str>>, values: impl IntoIterator<Item = bool>) -> Self {
+        Self {
+            name: name.into(),
+            kind: "UInt8",
+            components: 1,
+            bytes: values.into_iter().map(u8::from).collect(),
+        }
     }
 }
 
@@ -109,7 +126,7 @@ pub(crate) fn write_grid(
             } else {
                 format!(r#" NumberOfComponents="{components}""#)
             };
-            let attributes = format!(r#"type="{kind}" Name="{name}"{components}"#);
+            let attributes = format!(r#"type="{kind}" Name="{}"{components}"#, escaped(name));
             write_array(out, &attributes, bytes)?;
         }
         writeln!(out, "</{section}>")?;
@@ -141,6 +158,21 @@ fn write_array(out: &mut impl Write, attributes: &str, bytes: &[u8]) -> io::Resu
     writeln!(out, r#"<DataArray {attributes} format="binary">"#)?;
     writeln!(out, "{}{}", STANDARD.encode(header), STANDARD.encode(compressed))?;
     writeln!(out, "</DataArray>")
+}
+
+/// A name as the value of an attribute; control characters, which XML does not have, are left out.
+fn escaped(name: &str) -> String {
+    let mut text = String::new();
+    for letter in name.chars().filter(|letter| !letter.is_control()) {
+        match letter {
+            '&' => text.push_str("&amp;"),
+            '<' => text.push_str("&lt;"),
+            '>' => text.push_str("&gt;"),
+            '"' => text.push_str("&quot;"),
+            _ => text.push(letter),
+        }
+    }
+    text
 }
 
 fn integer(number: usize) -> [u8; 8] {
@@ -197,6 +229,16 @@ mod tests {
         let line = |name: &str| file.lines().find(|line| line.contains(name)).unwrap();
         assert!(!line(r#"Name="scalar""#).contains("NumberOfComponents"));
         assert!(line(r#"Name="vector""#).contains(r#"NumberOfComponents="3""#));
+    }
+
+    #[test]
+    fn names_of_all_kinds_are_attributes() {
+        let data = [DataArray::flags("a \"<b>\" & c\n", [true])];
+        let cells = Cells::new(VTK_POLYGON, std::iter::empty::<[usize; 3]>());
+        let mut file = Vec::new();
+        write_grid(&mut file, &[[0.0, 0.0]], &cells, &[(Location::Points, &data)]).unwrap();
+        let file = String::from_utf8(file).unwrap();
+        assert!(file.contains(r#"Name="a &quot;&lt;b&gt;&quot; &amp; c""#), "{file}");
     }
 
     #[test]

@@ -4,10 +4,11 @@ use std::io::{self, Write};
 
 use serde::Serialize;
 
-use crate::action::{ContactSolution, CutOff, Rejected, Residuals};
-use crate::discretization::Discretization;
+use crate::action::{ContactSolution, CutOff, GapSolution, Rejected, Residuals, StackSolution};
+use crate::discretization::{Discretization, StackDiscretization};
 use crate::estimate::{BoundParts, ErrorBound};
 use crate::formats::gmsh::PhysicalGroup;
+use crate::mesh::Mesh;
 use crate::solver::Statistics;
 
 /// The contents of `summary.json`, field by field. Other programs read the names.
@@ -29,7 +30,10 @@ pub struct Summary {
     pub vertices: usize,
     /// Triangles of the mesh.
     pub triangles: usize,
-    /// Unknowns of the quadratic program: two for each interior vertex.
+    /// Membranes, where they are another stack than the paper's pair.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub membranes: Option<usize>,
+    /// Unknowns of the quadratic program: one for each membrane and vertex where it is not held.
     pub unknowns: usize,
     /// The longest edge.
     pub h: f64,
@@ -59,6 +63,15 @@ pub struct Summary {
     pub total_force: Option<f64>,
     /// Likewise, with the action continued to these cells of the boundary; absent when not certified.
     pub total_force_extended: Option<f64>,
+    /// What happens in each gap of another stack than the paper's pair; absent when not certified.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contacts: Option<Vec<ContactSummary>>,
+    /// The forces with which the supports hold each membrane of such a stack, upwards.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub reactions: Option<Vec<f64>>,
+    /// What is left of the sum of all forces on such a stack, relative to the sum of their sizes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub force_imbalance: Option<f64>,
     /// What was cut off to make the solution exactly complementary, relative; absent when not certified.
     pub cut_off: Option<CutOff>,
     /// A bound of the energy error, guaranteed up to the quadrature of the loads; absent when not certified.
@@ -84,6 +97,33 @@ pub struct Summary {
     pub left_out: Vec<&'static str>,
     /// Where the time went.
     pub seconds: Seconds,
+}
+
+/// What happens in one gap of a stack.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ContactSummary {
+    /// The gap `k` lies between layers `k` and `k + 1`, counted from the ceiling, 0.
+    pub gap: usize,
+    /// Vertices in contact, with a force or without.
+    pub contact_vertices: usize,
+    /// Those of them that are pressed.
+    pub pressed_vertices: usize,
+    /// The area of the dual cells of the vertices in contact.
+    pub contact_area: f64,
+    /// The sum of the nodal forces.
+    pub total_force: f64,
+}
+
+impl From<&GapSolution> for ContactSummary {
+    fn from(gap: &GapSolution) -> Self {
+        Self {
+            gap: gap.number,
+            contact_vertices: gap.contact_vertices(),
+            pressed_vertices: gap.pressed_vertices(),
+            contact_area: gap.contact_area,
+            total_force: gap.total_force,
+        }
+    }
 }
 
 /// See [`PolishReport`](crate::solver::PolishReport).
@@ -135,7 +175,7 @@ impl Summary {
         d: &Discretization,
         tolerance: f64,
         result: Result<&ContactSolution, &Rejected>,
-        mut seconds: Seconds,
+        seconds: Seconds,
         bound: Option<&ErrorBound>,
     ) -> Self {
         let (statistics, residuals) = match result {
@@ -143,26 +183,9 @@ impl Summary {
             Err(rejected) => (&rejected.statistics, rejected.residuals.as_ref()),
         };
         let solution = result.ok();
-        seconds.setup = statistics.setup_seconds;
-        seconds.solve = statistics.solve_seconds;
-        let quality = d.mesh().quality();
         Self {
-            title: title.into(),
-            version: env!("CARGO_PKG_VERSION"),
-            backend: statistics.solver.clone(),
-            status: statistics.status.as_str(),
             certified: solution.is_some(),
-            tolerance,
-            vertices: d.mesh().points().len(),
-            triangles: d.mesh().triangles().len(),
             unknowns: 2 * d.interior().len(),
-            h: quality.h_max,
-            min_angle: quality.min_angle,
-            shape_regularity: quality.shape_regularity,
-            iterations: statistics.iterations,
-            level_iterations: statistics.level_iterations.clone(),
-            choice: statistics.choice.clone(),
-            polish: polish(statistics),
             energy: solution.map(ContactSolution::energy),
             contact_vertices: solution.map(|s| s.contact().iter().filter(|&&contact| contact).count()),
             pressed_vertices: solution.map(|s| s.lambda().iter().filter(|&&lambda| lambda > 0.0).count()),
@@ -177,6 +200,93 @@ impl Summary {
             quadrature_difference: bound.map(|bound| bound.quadrature_difference),
             warnings: warnings(bound),
             energy_norm: bound.map(|bound| bound.energy_norm),
+            ..Self::of_run(title, d.mesh(), tolerance, statistics, residuals, seconds)
+        }
+    }
+
+    /// Likewise of a stack. Where it has exactly one gap, the names of the pair mean that gap.
+    pub fn of_stack(
+        title: &str,
+        d: &StackDiscretization,
+        tolerance: f64,
+        result: Result<&StackSolution, &Rejected>,
+        seconds: Seconds,
+    ) -> Self {
+        let (statistics, residuals) = match result {
+            Ok(solution) => (solution.statistics(), Some(solution.residuals())),
+            Err(rejected) => (&rejected.statistics, rejected.residuals.as_ref()),
+        };
+        let solution = result.ok();
+        let contacts =
+            solution.map(|solution| solution.gaps().iter().map(ContactSummary::from).collect::<Vec<_>>());
+        let only = match contacts.as_deref() {
+            Some([only]) => Some(only.clone()),
+            _ => None,
+        };
+        Self {
+            certified: solution.is_some(),
+            membranes: Some(d.membranes()),
+            unknowns: d.unknowns(),
+            energy: solution.map(StackSolution::energy),
+            contact_vertices: only.as_ref().map(|contact| contact.contact_vertices),
+            pressed_vertices: only.as_ref().map(|contact| contact.pressed_vertices),
+            contact_area: only.as_ref().map(|contact| contact.contact_area),
+            total_force: only.as_ref().map(|contact| contact.total_force),
+            contacts,
+            reactions: solution.map(|solution| solution.reactions().to_vec()),
+            force_imbalance: solution.map(StackSolution::imbalance),
+            cut_off: solution.map(StackSolution::cut_off),
+            ..Self::of_run(title, d.mesh(), tolerance, statistics, residuals, seconds)
+        }
+    }
+
+    /// What is known of any run.
+    fn of_run(
+        title: &str,
+        mesh: &Mesh,
+        tolerance: f64,
+        statistics: &Statistics,
+        residuals: Option<&Residuals>,
+        mut seconds: Seconds,
+    ) -> Self {
+        seconds.setup = statistics.setup_seconds;
+        seconds.solve = statistics.solve_seconds;
+        let quality = mesh.quality();
+        Self {
+            title: title.into(),
+            version: env!("CARGO_PKG_VERSION"),
+            backend: statistics.solver.clone(),
+            status: statistics.status.as_str(),
+            certified: false,
+            tolerance,
+            vertices: mesh.points().len(),
+            triangles: mesh.triangles().len(),
+            membranes: None,
+            unknowns: 0,
+            h: quality.h_max,
+            min_angle: quality.min_angle,
+            shape_regularity: quality.shape_regularity,
+            iterations: statistics.iterations,
+            level_iterations: statistics.level_iterations.clone(),
+            choice: statistics.choice.clone(),
+            polish: polish(statistics),
+            energy: None,
+            contact_vertices: None,
+            pressed_vertices: None,
+            contact_area: None,
+            contact_area_extended: None,
+            total_force: None,
+            total_force_extended: None,
+            contacts: None,
+            reactions: None,
+            force_imbalance: None,
+            cut_off: None,
+            error_bound: None,
+            relative_error_bound: None,
+            error_parts: None,
+            quadrature_difference: None,
+            warnings: Vec::new(),
+            energy_norm: None,
             residuals: residuals.map(ResidualSummary::from),
             residual_beyond_rounding: residuals.map(Residuals::beyond_rounding),
             unused_groups: Vec::new(),

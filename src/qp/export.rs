@@ -5,10 +5,11 @@ use std::io::{self, Seek, Write};
 use sprs::CsMat;
 
 use super::QpProblem;
-use crate::discretization::Discretization;
+use crate::discretization::{Discretization, GapRow, StackDiscretization};
 use crate::formats::matrix_market::{write_array, write_coordinates};
 use crate::formats::npz::NpzWriter;
 use crate::formats::qps::Qps;
+use crate::mesh::Mesh;
 
 /// Writes the program and the mesh behind it as a numpy archive, which scipy loads without further help.
 ///
@@ -27,20 +28,55 @@ use crate::formats::qps::Qps;
 /// When writing fails.
 pub fn write_npz(d: &Discretization, qp: &QpProblem, out: impl Write + Seek) -> io::Result<()> {
     let mut archive = NpzWriter::deflated(out);
-    write_matrix(&mut archive, "P", &symmetric(qp.p_upper()))?;
-    write_matrix(&mut archive, "A", qp.a())?;
+    write_program(&mut archive, qp)?;
+    archive.integers("interior", d.interior(), &[d.interior().len()])?;
+    let dual_area: Vec<f64> = d.interior().iter().map(|&a| d.dual_area()[a]).collect();
+    archive.floats("dual_area", &dual_area, &[dual_area.len()])?;
+    write_mesh(&mut archive, d.mesh())?;
+    archive.finish()
+}
+
+/// Likewise the program of a stack, with these arrays in place of `interior` and `dual_area`, for `n` variables and `m` rows:
+///
+/// | key | shape | |
+/// |---|---|---|
+/// | `variable_membrane`, `variable_vertex` | `n` | the membrane, from 1 at the top, and the vertex of each variable |
+/// | `row_gap`, `row_vertex` | `m` | the gap `k`, between layers `k` and `k + 1` (0 is the ceiling), and the vertex of each row |
+/// | `row_dual_area` | `m` | the areas `\|D_a\|`, so that `y = lambda_k \|D_a\|` |
+///
+/// # Errors
+/// When writing fails.
+pub fn write_stack_npz(d: &StackDiscretization, qp: &QpProblem, out: impl Write + Seek) -> io::Result<()> {
+    let mut archive = NpzWriter::deflated(out);
+    write_program(&mut archive, qp)?;
+    let of_membrane = |i: usize| d.free_vertices(i).iter().map(move |&a| (i, a));
+    let (membrane, vertex): (Vec<usize>, Vec<usize>) = (1..=d.membranes()).flat_map(of_membrane).unzip();
+    archive.integers("variable_membrane", &membrane, &[membrane.len()])?;
+    archive.integers("variable_vertex", &vertex, &[vertex.len()])?;
+    let rows = d.rows();
+    let of_rows = |value: fn(&GapRow) -> usize| rows.iter().map(value).collect::<Vec<usize>>();
+    archive.integers("row_gap", &of_rows(|row| row.gap), &[rows.len()])?;
+    archive.integers("row_vertex", &of_rows(|row| row.vertex), &[rows.len()])?;
+    let dual_area: Vec<f64> = rows.iter().map(|row| d.dual_area()[row.vertex]).collect();
+    archive.floats("row_dual_area", &dual_area, &[rows.len()])?;
+    write_mesh(&mut archive, d.mesh())?;
+    archive.finish()
+}
+
+fn write_program(archive: &mut NpzWriter<impl Write + Seek>, qp: &QpProblem) -> io::Result<()> {
+    write_matrix(archive, "P", &symmetric(qp.p_upper()))?;
+    write_matrix(archive, "A", qp.a())?;
     archive.floats("q", qp.q(), &[qp.q().len()])?;
     archive.floats("b", qp.b(), &[qp.b().len()])?;
     archive.floats("constant", &[qp.constant()], &[])?;
     archive.floats("displacement_scale", &[qp.primal_scale()], &[])?;
-    archive.floats("force_scale", &[qp.dual_scale()], &[])?;
-    archive.integers("interior", d.interior(), &[d.interior().len()])?;
-    let dual_area: Vec<f64> = d.interior().iter().map(|&a| d.dual_area()[a]).collect();
-    archive.floats("dual_area", &dual_area, &[dual_area.len()])?;
-    let (points, triangles) = (d.mesh().points(), d.mesh().triangles());
+    archive.floats("force_scale", &[qp.dual_scale()], &[])
+}
+
+fn write_mesh(archive: &mut NpzWriter<impl Write + Seek>, mesh: &Mesh) -> io::Result<()> {
+    let (points, triangles) = (mesh.points(), mesh.triangles());
     archive.floats("points", points.as_flattened(), &[points.len(), 2])?;
-    archive.integers("triangles", triangles.as_flattened(), &[triangles.len(), 3])?;
-    archive.finish()
+    archive.integers("triangles", triangles.as_flattened(), &[triangles.len(), 3])
 }
 
 /// The arrays of which scipy makes a matrix.

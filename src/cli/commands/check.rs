@@ -1,12 +1,14 @@
 //! `membranes check`: every residual, all solvers, side by side, or of an answer from elsewhere.
 
 use super::answer::{self, Verdict};
-use crate::action::{ContactSolution, Rejected, Residuals, certify};
+use crate::action::{
+    ContactSolution, GapSolution, Rejected, Residuals, StackSolution, certify, certify_stack,
+};
 use crate::cli::args::CheckArguments;
 use crate::cli::case::{SolverName, SolverSettings};
 use crate::cli::failure::Failure;
 use crate::cli::run::progress::Progress;
-use crate::cli::run::setup::{Setup, options, solver, unused_groups};
+use crate::cli::run::setup::{Setup, options, solver, stack_solver, unused_groups};
 use crate::cli::run::watch::Watch;
 use crate::cli::terminal::{fixed, print, wrapped};
 use crate::discretization::Discretization;
@@ -14,6 +16,7 @@ use crate::fem::element_loads;
 use crate::flux::{FluxDefects, Reconstruction, Reconstructor};
 use crate::mesh::SubTriangulation;
 use crate::problem::ContactProblem;
+use crate::solver::SolverError;
 use crate::study::Tolerance;
 use crate::text::grouped;
 
@@ -21,11 +24,57 @@ use crate::text::grouped;
 const AS_IT_IS: &str = "as it is";
 
 /// One solver's result.
-struct Column {
+struct Column<S> {
     heading: [String; 2],
     /// The answer as the solver left it is shown for comparison only.
     must_certify: bool,
-    result: Result<ContactSolution, Box<Rejected>>,
+    result: Result<S, Box<Rejected>>,
+}
+
+/// What is shown of a certified solution.
+trait Shown {
+    fn residuals(&self) -> &Residuals;
+    fn energy(&self) -> f64;
+    /// Vertices in contact, in all gaps.
+    fn contact_vertices(&self) -> usize;
+    /// In all gaps.
+    fn total_force(&self) -> f64;
+}
+
+impl Shown for ContactSolution {
+    fn residuals(&self) -> &Residuals {
+        self.residuals()
+    }
+
+    fn energy(&self) -> f64 {
+        self.energy()
+    }
+
+    fn contact_vertices(&self) -> usize {
+        self.contact().iter().filter(|&&contact| contact).count()
+    }
+
+    fn total_force(&self) -> f64 {
+        self.total_force()
+    }
+}
+
+impl Shown for StackSolution {
+    fn residuals(&self) -> &Residuals {
+        self.residuals()
+    }
+
+    fn energy(&self) -> f64 {
+        self.energy()
+    }
+
+    fn contact_vertices(&self) -> usize {
+        self.gaps().iter().map(GapSolution::contact_vertices).sum()
+    }
+
+    fn total_force(&self) -> f64 {
+        self.gaps().iter().map(|gap| gap.total_force).sum()
+    }
 }
 
 pub(crate) fn run(arguments: &CheckArguments, watch: &Watch) -> Result<(), Failure> {
@@ -34,35 +83,98 @@ pub(crate) fn run(arguments: &CheckArguments, watch: &Watch) -> Result<(), Failu
     if let Some(tolerance) = arguments.tolerance {
         setup.case.solver.tolerance = Tolerance::Fixed(tolerance);
     }
+    let is_pair = setup.case.problem.as_pair().is_some();
     if arguments.answer.is_none() {
-        for name in solvers() {
+        for name in solvers(is_pair) {
             setup.check_memory(name)?;
         }
     }
+    if is_pair {
+        check_pair(&setup, arguments, watch, progress)
+    } else {
+        check_stack(&setup, arguments, watch, progress)
+    }
+}
+
+fn check_pair(
+    setup: &Setup,
+    arguments: &CheckArguments,
+    watch: &Watch,
+    progress: Progress,
+) -> Result<(), Failure> {
     let (d, seconds) = setup.discretize(&progress)?;
     let (columns, remedy) = match &arguments.answer {
-        None => (columns_of_solvers(&setup, &d, &progress)?, ""),
+        None => {
+            let tolerance = setup.case.solver.tolerance.or_default();
+            let solved = |settings: &SolverSettings| {
+                let candidate = solver(settings.name).solve(&d, &options(settings))?;
+                Ok(certify(&d, candidate, tolerance))
+            };
+            (columns_of_solvers(setup, true, &solved, &progress)?, "")
+        }
         Some(file) => {
             progress.stage("judging the answer");
-            let Verdict { result, remedy } = answer::judge(&setup, &d, file, arguments, seconds, watch)?;
-            let heading = [answer::NAME.into(), AS_IT_IS.into()];
-            (vec![Column { heading, must_certify: true, result }], remedy)
+            let answered = answer::judge_pair(setup, &d, file, arguments, seconds, watch)?;
+            column_of_answer(answered)
+        }
+    };
+    let fluxes = match columns.iter().find_map(|column| column.result.as_ref().ok()) {
+        Some(solution) if !arguments.case.quiet => flux_lines(&setup.case.problem, &d, solution)
+            .map_err(|error| Failure::Input(format!("{}: {error}", setup.name)))?,
+        _ => String::new(),
+    };
+    drop(progress);
+    report(setup, arguments, 2 * d.interior().len(), &columns, &fluxes, remedy)
+}
+
+fn check_stack(
+    setup: &Setup,
+    arguments: &CheckArguments,
+    watch: &Watch,
+    progress: Progress,
+) -> Result<(), Failure> {
+    let (d, seconds) = setup.discretize_stack(&progress)?;
+    let (columns, remedy) = match &arguments.answer {
+        None => {
+            let tolerance = setup.case.solver.tolerance.or_default();
+            let solved = |settings: &SolverSettings| {
+                let mut solver = stack_solver(settings.name).expect("one of those for stacks");
+                Ok(certify_stack(&d, solver.solve_stack(&d, &options(settings))?, tolerance))
+            };
+            (columns_of_solvers(setup, false, &solved, &progress)?, "")
+        }
+        Some(file) => {
+            progress.stage("judging the answer");
+            let answered = answer::judge_stack(setup, &d, file, arguments, seconds, watch)?;
+            column_of_answer(answered)
         }
     };
     drop(progress);
+    report(setup, arguments, d.unknowns(), &columns, "", remedy)
+}
+
+fn column_of_answer<S>(Verdict { result, remedy }: Verdict<S>) -> (Vec<Column<S>>, &'static str) {
+    let heading = [answer::NAME.into(), AS_IT_IS.into()];
+    (vec![Column { heading, must_certify: true, result }], remedy)
+}
+
+/// Prints the table; an error when a result that has to certify does not.
+fn report<S: Shown>(
+    setup: &Setup,
+    arguments: &CheckArguments,
+    unknowns: usize,
+    columns: &[Column<S>],
+    fluxes: &str,
+    remedy: &str,
+) -> Result<(), Failure> {
     if !arguments.case.quiet {
-        let unknowns = grouped(2 * d.interior().len());
         let title = format!(
-            "{}: {unknowns} unknowns, tolerance {:.0e}",
+            "{}: {} unknowns, tolerance {:.0e}",
             setup.case.title,
+            grouped(unknowns),
             setup.case.solver.tolerance.or_default()
         );
-        let fluxes = match columns.iter().find_map(|column| column.result.as_ref().ok()) {
-            Some(solution) => flux_lines(&setup.case.problem, &d, solution)
-                .map_err(|error| Failure::Input(format!("{}: {error}", setup.name)))?,
-            None => String::new(),
-        };
-        print(&(wrapped(&title, 2) + "\n" + &table(&columns) + &fluxes + &unused_groups(&setup.groups)))?;
+        print(&(wrapped(&title, 2) + "\n" + &table(columns) + fluxes + &unused_groups(&setup.groups)))?;
     }
     match columns.iter().filter(|column| column.must_certify).find_map(|column| column.result.as_ref().err())
     {
@@ -71,33 +183,40 @@ pub(crate) fn run(arguments: &CheckArguments, watch: &Watch) -> Result<(), Failu
     }
 }
 
-/// All of this build; the choice among them is one of them.
-fn solvers() -> impl Iterator<Item = SolverName> {
-    SolverName::ALL.into_iter().filter(|solver| solver.is_built() && *solver != SolverName::Auto)
+/// All of this build for a pair, or for any stack; the choice among them is one of them.
+fn solvers(is_pair: bool) -> impl Iterator<Item = SolverName> {
+    SolverName::ALL
+        .into_iter()
+        .filter(|solver| solver.is_built() && *solver != SolverName::Auto)
+        .filter(move |solver| is_pair || stack_solver(*solver).is_some())
 }
 
-fn columns_of_solvers(
+/// What a solver with these settings finds.
+type Solved<'s, S> = dyn Fn(&SolverSettings) -> Result<Result<S, Box<Rejected>>, SolverError> + 's;
+
+fn columns_of_solvers<S>(
     setup: &Setup,
-    d: &Discretization,
+    is_pair: bool,
+    solved: &Solved<S>,
     progress: &Progress,
-) -> Result<Vec<Column>, Failure> {
+) -> Result<Vec<Column<S>>, Failure> {
     let mut columns = Vec::new();
-    for name in solvers() {
+    for name in solvers(is_pair) {
         let ways = if name.is_polished() { [true, false].as_slice() } else { &[true] };
         for &polish in ways {
             let settings = SolverSettings { name, polish, ..setup.case.solver.clone() };
-            columns.push(column(&setup.name, d, &settings, progress)?);
+            columns.push(column(&setup.name, &settings, solved, progress)?);
         }
     }
     Ok(columns)
 }
 
-fn column(
+fn column<S>(
     case: &str,
-    d: &Discretization,
     settings: &SolverSettings,
+    solved: &Solved<S>,
     progress: &Progress,
-) -> Result<Column, Failure> {
+) -> Result<Column<S>, Failure> {
     let name = settings.name;
     let way = match (name.is_polished(), settings.polish) {
         (false, _) => "",
@@ -105,14 +224,8 @@ fn column(
         (true, false) => AS_IT_IS,
     };
     progress.stage(format!("{} {way}", name.as_str()));
-    let candidate = solver(name)
-        .solve(d, &options(settings))
-        .map_err(|error| Failure::NotCertified(format!("{case}: {error}")))?;
-    Ok(Column {
-        heading: heading(name, way),
-        must_certify: settings.polish,
-        result: certify(d, candidate, settings.tolerance.or_default()),
-    })
+    let result = solved(settings).map_err(|error| Failure::NotCertified(format!("{case}: {error}")))?;
+    Ok(Column { heading: heading(name, way), must_certify: settings.polish, result })
 }
 
 /// Two lines that fit into a column: the names of the others are too long to have a way beside them.
@@ -157,7 +270,7 @@ fn shortened(name: &str) -> &str {
 }
 
 /// A row for each residual, a column for each result.
-fn table(columns: &[Column]) -> String {
+fn table<S: Shown>(columns: &[Column<S>]) -> String {
     let residuals: Vec<Option<&Residuals>> = columns
         .iter()
         .map(|column| match &column.result {
@@ -170,7 +283,7 @@ fn table(columns: &[Column]) -> String {
         format!("  {:17}{cells}\n", shortened(name))
     };
     let heading = |line: usize| row("", &|k| columns[k].heading[line].clone());
-    let solved = |k: usize, value: &dyn Fn(&ContactSolution) -> String| {
+    let solved = |k: usize, value: &dyn Fn(&S) -> String| {
         columns[k].result.as_ref().map_or_else(|_| "-".into(), value)
     };
     let mut text = heading(0) + &heading(1);
@@ -181,8 +294,6 @@ fn table(columns: &[Column]) -> String {
     text += &row("(overlap)", &|k| residuals[k].map_or("-".into(), |r| format!("{:.1e}", r.overlap)));
     text += &row("certified", &|k| if columns[k].result.is_ok() { "yes".into() } else { "no".into() });
     text += &row("energy", &|k| solved(k, &|s| fixed(s.energy(), 6)));
-    text += &row("contact vertices", &|k| {
-        solved(k, &|s| grouped(s.contact().iter().filter(|&&contact| contact).count()))
-    });
+    text += &row("contact vertices", &|k| solved(k, &|s| grouped(s.contact_vertices())));
     text + &row("total force", &|k| solved(k, &|s| fixed(s.total_force(), 6)))
 }

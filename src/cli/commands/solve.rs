@@ -1,8 +1,13 @@
 //! `membranes solve`.
 
+mod report;
+mod stack;
+
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
+
+use report::{UNTOUCHED, certified_line, mesh_line, polish_line, reject, solver_line};
 
 use super::solution::{A_SOLUTION, left_out_line, write_solution};
 use crate::action::{ContactSolution, Rejected};
@@ -28,9 +33,6 @@ use crate::solver::{PolishReport, Statistics};
 use crate::study::{AccuracyError, Bounded, solve_bounded};
 use crate::text::grouped;
 
-/// What an interrupted run has to say.
-const UNTOUCHED: &str = "nothing there was changed";
-
 pub(crate) fn run(arguments: &SolveArguments, watch: &Watch) -> Result<(), Failure> {
     let clock = Clock::new(arguments.time_limit);
     clock.watch(watch, too_early(&arguments.case.path));
@@ -39,6 +41,9 @@ pub(crate) fn run(arguments: &SolveArguments, watch: &Watch) -> Result<(), Failu
     let mut setup = Setup::new(&arguments.case, &progress)?;
     override_settings(&mut setup, arguments, &clock);
     setup.check_memory(setup.case.solver.name)?;
+    if setup.case.problem.as_pair().is_none() {
+        return stack::run(&setup, arguments, (&clock, watch), progress);
+    }
     let (d, seconds) = setup.discretize(&progress)?;
     // Nobody may find a folder of which the run says that nothing was written.
     clock.check(too_early(&arguments.case.path))?;
@@ -145,18 +150,6 @@ fn too_late(
     move || reject(&name, &folder, &summary, &rejected)
 }
 
-/// Writes the summary of a run without a solution, and says why there is none. What an earlier run left is not the solution of
-/// this one, and goes.
-fn reject(name: &str, folder: &Folder, summary: &Summary, rejected: &Rejected) -> Failure {
-    let mut results = folder.results(Part::Solution);
-    let written = results.write(SUMMARY, |out| summary.write(out)).and_then(|()| results.publish());
-    if let Err(failure) = written {
-        return failure;
-    }
-    let (status, remedy) = (rejected.statistics.status.as_str(), rejected.remedy());
-    Failure::NotCertified(format!("{name}: {rejected} (status {status}); {remedy}"))
-}
-
 /// Arguments come before the case file.
 fn override_settings(setup: &mut Setup, arguments: &SolveArguments, clock: &Clock) {
     let settings = &mut setup.case.solver;
@@ -228,35 +221,15 @@ fn table(
     let number = |value: Option<f64>| value.map_or_else(String::new, |value| fixed(value, 8));
     let interior = summary.unknowns / 2;
     let contact = summary.contact_vertices.unwrap_or(0);
-    let worst = summary.residuals.as_ref().map_or(f64::NAN, |r| {
-        [r.stationarity, r.primal, r.dual_sign, r.complementarity, r.action_mismatch, r.dual_mismatch]
-            .into_iter()
-            .fold(r.variational_inequality, f64::max)
-    });
     let seconds = &summary.seconds;
     files.retain(|name| !summary.left_out.contains(name));
     let files = files.join(", ");
     let rows = [
-        (
-            "mesh",
-            format!(
-                "{} vertices, {} triangles, least angle {:.1} degrees",
-                grouped(summary.vertices),
-                grouped(summary.triangles),
-                summary.min_angle
-            ),
-        ),
+        ("mesh", mesh_line(summary)),
         ("solver", solver_line(summary)),
         ("chosen", summary.choice.clone().unwrap_or_default()),
         ("polish", polish.map_or_else(String::new, polish_line)),
-        (
-            "certified",
-            format!(
-                "largest residual {worst:.1e}{} (tolerance {:.0e})",
-                beyond(summary, worst),
-                summary.tolerance
-            ),
-        ),
+        ("certified", certified_line(summary)),
         ("error", error_line(summary, unloaded)),
         ("guaranteed", guarantee(summary)),
         ("warning", summary.warnings.join("\n")),
@@ -288,22 +261,6 @@ fn table(
     format!("{}\n{}", wrapped(&summary.title, 2), fields(&rows))
 }
 
-/// What of a residual that is larger than the tolerance is more than rounding.
-fn beyond(summary: &Summary, worst: f64) -> String {
-    match summary.residual_beyond_rounding {
-        Some(beyond) if worst > summary.tolerance => format!(", {beyond:.1e} beyond rounding"),
-        _ => String::new(),
-    }
-}
-
-fn solver_line(summary: &Summary) -> String {
-    let Summary { backend, status, iterations, level_iterations, .. } = summary;
-    let levels = level_iterations.len();
-    let on_levels = if levels > 1 { format!(" on the finest of {levels} levels") } else { String::new() };
-    let plural = if *iterations == 1 { "" } else { "s" };
-    format!("{backend}: {status} in {} iteration{plural}{on_levels}", grouped(*iterations))
-}
-
 /// What the bound rests on.
 fn guarantee(summary: &Summary) -> String {
     let text = match summary.error_bound {
@@ -323,11 +280,4 @@ fn error_line(summary: &Summary, unloaded: bool) -> String {
         None => "no relative bound: refine".into(),
     };
     format!("at most {bound:.3e} in the energy norm ({relative})")
-}
-
-fn polish_line(polish: PolishReport) -> String {
-    let PolishReport { kept, repairs, residual_before, residual_after, .. } = polish;
-    let verdict = if kept { "kept" } else { "not kept" };
-    let repairs = if repairs == 1 { "1 contact repair".into() } else { format!("{repairs} contact repairs") };
-    format!("{verdict}, {repairs}, residual {residual_before:.1e} -> {residual_after:.1e}")
 }

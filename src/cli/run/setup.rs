@@ -1,5 +1,6 @@
 //! From a case file to a mesh, a discrete problem, and a solver.
 
+use std::collections::HashSet;
 use std::io::{self, Read};
 use std::path::Path;
 use std::time::Instant;
@@ -11,13 +12,14 @@ use crate::cli::args::CaseArguments;
 use crate::cli::case::{CaseFile, CaseId, MeshSource, SolverName, SolverSettings};
 use crate::cli::failure::Failure;
 use crate::cli::terminal::COLUMNS;
-use crate::discretization::Discretization;
+use crate::discretization::{Discretization, StackDiscretization};
 use crate::formats::gmsh::{PhysicalGroup, parse};
 use crate::mesh::{GmshMesh, MAX_VERTICES, MeshFamily, ReadError, estimated_vertices, generate, gmsh_nodes};
 use crate::output::Seconds;
+use crate::problem::ContactProblem;
 #[cfg(any(feature = "clarabel", feature = "osqp"))]
 use crate::solver::QpSolver;
-use crate::solver::{ActiveSet, Auto, ContactSolver, Multigrid, SolverOptions};
+use crate::solver::{ActiveSet, Auto, ContactSolver, Multigrid, SolverOptions, StackSolver};
 use crate::text::{excerpt, grouped};
 
 /// The case and its meshes.
@@ -30,7 +32,7 @@ pub(crate) struct Setup {
     pub(crate) family: MeshFamily,
     /// Gmsh's numbers of the vertices of the coarse mesh; none of a mesh that was generated.
     pub(crate) node_tags: Vec<u64>,
-    /// The physical groups of the mesh file.
+    /// The physical groups of the mesh file that no datum mentions.
     pub(crate) groups: Vec<PhysicalGroup>,
     pub(crate) seconds: Seconds,
     pub(crate) memory: Memory,
@@ -50,6 +52,7 @@ impl Setup {
             make_mesh(&name, &case, arguments.refine as usize, memory)?;
         let id = CaseId::new(&name, &text, &case.mesh);
         let seconds = Seconds { mesh: start.elapsed().as_secs_f64(), ..Seconds::default() };
+        let groups = not_mentioned(groups, &case.problem);
         let further = arguments.refine as usize;
         Ok(Self { name, id, case, further, family, node_tags, groups, seconds, memory })
     }
@@ -65,7 +68,10 @@ impl Setup {
             return Ok(());
         }
         let pair = "two membranes of constant tension, held all around, the lower one at 0, without foundation or obstacle";
-        Err(Failure::Input(format!("{}: this command is for a pair only: pose {pair}", self.name)))
+        Err(Failure::Input(format!(
+            "{}: so far, this command is for a pair: pose {pair}, or solve the stack as it is (`membranes solve`)",
+            self.name
+        )))
     }
 
     /// Refuses a solver that needs more memory on this mesh than there is.
@@ -73,17 +79,51 @@ impl Setup {
         self.memory.check(&self.name, name, self.family.mesh().points().len() as f64)
     }
 
-    /// Assembles the discrete problem, and says how long it took.
+    /// Assembles the discrete problem of the pair, and says how long it took.
     pub(crate) fn discretize(&self, progress: &Progress) -> Result<(Discretization, Seconds), Failure> {
         self.require_pair()?;
+        self.assemble(progress, || {
+            Discretization::new(&self.case.problem, self.family.mesh().clone())
+                .map_err(|error| (error.vertex(), error.to_string()))
+        })
+    }
+
+    /// Likewise of any stack.
+    pub(crate) fn discretize_stack(
+        &self,
+        progress: &Progress,
+    ) -> Result<(StackDiscretization, Seconds), Failure> {
+        self.assemble(progress, || {
+            StackDiscretization::new(&self.case.problem, self.family.mesh().clone())
+                .map_err(|error| (error.vertex(), error.to_string()))
+        })
+    }
+
+    /// Assembles; an error comes with the vertex that it names.
+    fn assemble<D>(
+        &self,
+        progress: &Progress,
+        assemble: impl FnOnce() -> Result<D, (Option<usize>, String)>,
+    ) -> Result<(D, Seconds), Failure> {
         progress.stage(format!("assembling on {} vertices", grouped(self.family.mesh().points().len())));
         let start = Instant::now();
-        let d = Discretization::new(&self.case.problem, self.family.mesh().clone()).map_err(|error| {
-            let vertices: Vec<usize> = error.vertex().into_iter().collect();
+        let d = assemble().map_err(|(vertex, error)| {
+            let vertices: Vec<usize> = vertex.into_iter().collect();
             Failure::Input(format!("{}: {error}{}", self.name, gmsh_nodes(&vertices, &self.node_tags)))
         })?;
         Ok((d, Seconds { assembly: start.elapsed().as_secs_f64(), ..self.seconds }))
     }
+}
+
+/// Those of the physical groups that no datum mentions.
+fn not_mentioned(groups: Vec<PhysicalGroup>, problem: &ContactProblem) -> Vec<PhysicalGroup> {
+    let [curves, regions] = [problem.curves(), problem.regions()].map(HashSet::<&str>::from_iter);
+    let is_mentioned = |group: &PhysicalGroup| match group.dimension {
+        1 => curves.contains(group.to_string().as_str()),
+        2 => regions.contains(group.to_string().as_str()),
+        _ => false,
+    };
+    groups.into_iter().filter(|group| !is_mentioned(group)).collect()
 }
 
 /// The groups that a run does not use, in one line for the terminal; nothing where there are none.
@@ -218,6 +258,19 @@ pub(crate) fn solver(name: SolverName) -> Box<dyn ContactSolver> {
         SolverName::Osqp => Box::new(QpSolver::new(crate::qp::Osqp)),
         #[allow(unreachable_patterns, reason = "with both features there is no other")]
         _ => unreachable!("the name is refused where it is parsed"),
+    }
+}
+
+/// The solver of this name for a stack; multigrid knows the paper's pair only.
+pub(crate) fn stack_solver(name: SolverName) -> Option<Box<dyn StackSolver>> {
+    match name {
+        SolverName::ActiveSet => Some(Box::new(ActiveSet)),
+        SolverName::Auto => Some(Box::new(Auto)),
+        #[cfg(feature = "clarabel")]
+        SolverName::Clarabel => Some(Box::new(QpSolver::new(crate::qp::Clarabel))),
+        #[cfg(feature = "osqp")]
+        SolverName::Osqp => Some(Box::new(QpSolver::new(crate::qp::Osqp))),
+        _ => None,
     }
 }
 

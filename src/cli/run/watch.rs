@@ -12,10 +12,12 @@ use std::thread;
 use std::time::Instant;
 
 use crate::cli::failure::Failure;
-use crate::discretization::Discretization;
+use crate::discretization::{Discretization, StackDiscretization};
 use crate::output::discard_unfinished;
 use crate::qp::TimeLimit;
-use crate::solver::{Candidate, ContactSolver, PreparedSolver, SolverError, SolverOptions};
+use crate::solver::{
+    Candidate, ContactSolver, PreparedSolver, SolverError, SolverOptions, StackCandidate, StackSolver,
+};
 
 /// A solver looks at the clock between its steps. What goes on longer than this fraction of the limit
 /// is not waited for.
@@ -88,6 +90,24 @@ impl Watch {
         Box::new(Watched { solver, watch: self.clone(), give_up: Arc::new(give_up) })
     }
 
+    /// Likewise a solver of stacks.
+    pub(crate) fn over_stack(
+        &self,
+        solver: Box<dyn StackSolver>,
+        give_up: impl Fn() -> Failure + Send + Sync + 'static,
+    ) -> Box<dyn StackSolver> {
+        Box::new(WatchedStack { solver, watch: self.clone(), give_up: Arc::new(give_up) })
+    }
+
+    /// What `solve` returns, if it comes back in time.
+    fn in_time<T>(&self, limit: Option<TimeLimit>, give_up: &GiveUp, solve: impl FnOnce() -> T) -> T {
+        let alarm = limit.and_then(|limit| Alarm::after(limit, Arc::clone(give_up)));
+        self.tell(Event::Alarm(Span::Solve, alarm));
+        let result = solve();
+        self.tell(Event::Alarm(Span::Solve, None));
+        result
+    }
+
     fn tell(&self, event: Event) {
         // Nobody listens any more when the program ends.
         let _ = self.events.send(event);
@@ -125,11 +145,25 @@ struct WatchedPrepared<'s> {
 
 impl PreparedSolver for WatchedPrepared<'_> {
     fn solve(&mut self, options: &SolverOptions) -> Result<Candidate, SolverError> {
-        let alarm = options.time_limit.and_then(|limit| Alarm::after(limit, Arc::clone(self.give_up)));
-        self.watch.tell(Event::Alarm(Span::Solve, alarm));
-        let candidate = self.solver.solve(options);
-        self.watch.tell(Event::Alarm(Span::Solve, None));
-        candidate
+        self.watch.in_time(options.time_limit, self.give_up, || self.solver.solve(options))
+    }
+}
+
+/// Likewise, for stacks.
+struct WatchedStack {
+    solver: Box<dyn StackSolver>,
+    watch: Watch,
+    give_up: GiveUp,
+}
+
+impl StackSolver for WatchedStack {
+    fn solve_stack(
+        &mut self,
+        d: &StackDiscretization,
+        options: &SolverOptions,
+    ) -> Result<StackCandidate, SolverError> {
+        let Self { solver, watch, give_up } = self;
+        watch.in_time(options.time_limit, give_up, || solver.solve_stack(d, options))
     }
 }
 

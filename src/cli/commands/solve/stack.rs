@@ -1,0 +1,176 @@
+//! `membranes solve` for another stack than the paper's pair.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::report::{UNTOUCHED, certified_line, mesh_line, polish_line, reject, solver_line};
+use crate::action::{Rejected, StackSolution, certify_stack};
+use crate::cli::args::SolveArguments;
+use crate::cli::case::MeshSource;
+use crate::cli::commands::solution::A_SOLUTION;
+use crate::cli::failure::Failure;
+use crate::cli::run::clock::Clock;
+use crate::cli::run::files::{Part, SOLUTION, SUMMARY};
+use crate::cli::run::folder::{Claim, Folder};
+use crate::cli::run::progress::Progress;
+use crate::cli::run::setup::{Setup, options, stack_solver, too_early, unused_groups};
+use crate::cli::run::watch::Watch;
+use crate::cli::terminal::{fields, fixed, print, wrapped};
+use crate::discretization::StackDiscretization;
+use crate::output::{ContactSummary, Seconds, Summary, write_stack_vtu};
+use crate::qp::{Status, TimeLimit};
+use crate::solver::{PolishReport, Statistics};
+use crate::text::grouped;
+
+/// Why there is no bound, as the summary and the terminal have it.
+const NO_BOUND: &str = "no bound of the error yet: for other stacks than the pair, compare with a finer mesh";
+
+pub(super) fn run(
+    setup: &Setup,
+    arguments: &SolveArguments,
+    (clock, watch): (&Clock, &Watch),
+    progress: Progress,
+) -> Result<(), Failure> {
+    let settings = &setup.case.solver;
+    let Some(solver) = stack_solver(settings.name) else {
+        let remedy = "choose auto, active-set, or a QP solver";
+        return Err(Failure::Input(format!(
+            "{}: {} is for a pair so far: {remedy}",
+            setup.name,
+            settings.name.as_str()
+        )));
+    };
+    if arguments.dual {
+        return Err(Failure::Input(format!("{}: --dual is for a pair so far: leave it out", setup.name)));
+    }
+    let (d, seconds) = setup.discretize_stack(&progress)?;
+    clock.check(too_early(&arguments.case.path))?;
+    let claim = Claim {
+        case: &setup.id,
+        part: Part::Solution,
+        settings: A_SOLUTION.into(),
+        overwrite: arguments.output.overwrite,
+        says: UNTOUCHED,
+    };
+    let folder = Folder::claim(&arguments.output.folder(&arguments.case.path), &claim, watch)?;
+    progress.stage(format!("{} solves for {} unknowns", settings.name.as_str(), grouped(d.unknowns())));
+    let give_up = Arc::new(too_late(setup, &d, &folder, seconds));
+    let of_run = Arc::clone(&give_up);
+    clock.watch(watch, move || of_run());
+    let mut solver = watch.over_stack(solver, move || give_up());
+    let candidate = solver
+        .solve_stack(&d, &options(settings))
+        .map_err(|error| Failure::NotCertified(format!("{}: {error}", setup.name)))?;
+    watch.lift();
+    let tolerance = settings.tolerance.or_default();
+    let solution = certify_stack(&d, candidate, tolerance).map_err(|rejected| {
+        let summary = summary(setup, &d, Err(&rejected), seconds);
+        reject(&setup.name, &folder, &summary, &rejected)
+    })?;
+    progress.stage("writing the results");
+    let summary = write_results(setup, &d, &solution, seconds, &folder)?;
+    drop(progress);
+    if !arguments.case.quiet {
+        let table = table(&summary, solution.statistics().polish, d.unknowns(), folder.path());
+        print(&(table + &unused_groups(&setup.groups)))?;
+    }
+    Ok(())
+}
+
+fn summary(
+    setup: &Setup,
+    d: &StackDiscretization,
+    result: Result<&StackSolution, &Rejected>,
+    seconds: Seconds,
+) -> Summary {
+    let tolerance = setup.case.solver.tolerance.or_default();
+    let mut summary =
+        Summary::of_stack(&setup.case.title, d, tolerance, result, seconds).with_unused_groups(&setup.groups);
+    summary.warnings.push(NO_BOUND.into());
+    summary
+}
+
+/// What to do when the solver does not come back in time.
+fn too_late(
+    setup: &Setup,
+    d: &StackDiscretization,
+    folder: &Folder,
+    seconds: Seconds,
+) -> impl Fn() -> Failure + Send + Sync + 'static {
+    let settings = &setup.case.solver;
+    let statistics = Statistics {
+        solve_seconds: settings.time_limit.map_or(0.0, TimeLimit::seconds),
+        ..Statistics::of(settings.name.as_str(), Status::TimeLimit)
+    };
+    let rejected = Rejected::without_result(statistics);
+    let summary = summary(setup, d, Err(&rejected), seconds);
+    let (name, folder) = (setup.name.clone(), folder.clone());
+    move || reject(&name, &folder, &summary, &rejected)
+}
+
+fn write_results(
+    setup: &Setup,
+    d: &StackDiscretization,
+    solution: &StackSolution,
+    seconds: Seconds,
+    folder: &Folder,
+) -> Result<Summary, Failure> {
+    let start = Instant::now();
+    let mut results = folder.results(Part::Solution);
+    // The names of a mesh file are its author's; those of generators are known.
+    let groups = matches!(setup.case.mesh, MeshSource::File(_));
+    results.write(SOLUTION, |out| write_stack_vtu(d, solution, groups, out))?;
+    let seconds = Seconds { output: start.elapsed().as_secs_f64(), ..seconds };
+    let summary = summary(setup, d, Ok(solution), seconds);
+    results.write(SUMMARY, |out| summary.write(out))?;
+    results.publish()?;
+    Ok(summary)
+}
+
+/// The summary for the eye.
+fn table(summary: &Summary, polish: Option<PolishReport>, unknowns: usize, folder: &Path) -> String {
+    let seconds = &summary.seconds;
+    let number = |value: Option<f64>| value.map_or_else(String::new, |value| fixed(value, 8));
+    let contacts = summary.contacts.as_deref().unwrap_or_default();
+    let several = contacts.len() > 1;
+    let contact = |contact: &ContactSummary| {
+        let gap = if several { format!("gap {}: ", contact.gap) } else { String::new() };
+        format!(
+            "{gap}{} vertices, area {}, total force {}",
+            grouped(contact.contact_vertices),
+            fixed(contact.contact_area, 6),
+            fixed(contact.total_force, 8)
+        )
+    };
+    let reactions: Vec<String> =
+        summary.reactions.iter().flatten().map(|&reaction| fixed(reaction, 6)).collect();
+    let rows = [
+        ("mesh", mesh_line(summary)),
+        ("membranes", format!("{}, {} unknowns", summary.membranes.unwrap_or(0), grouped(unknowns))),
+        ("solver", solver_line(summary)),
+        ("chosen", summary.choice.clone().unwrap_or_default()),
+        ("polish", polish.map_or_else(String::new, polish_line)),
+        ("certified", certified_line(summary)),
+        ("energy", number(summary.energy)),
+        ("contact", contacts.iter().map(contact).collect::<Vec<_>>().join("\n")),
+        ("supports", reactions.join(", ")),
+        (
+            "all forces",
+            summary.force_imbalance.map_or_else(String::new, |left| format!("balanced up to {left:.1e}")),
+        ),
+        ("warning", summary.warnings.join("\n")),
+        (
+            "seconds",
+            format!(
+                "mesh {:.2}, assembly {:.2}, solve {:.2}, output {:.2}",
+                seconds.mesh,
+                seconds.assembly,
+                seconds.setup + seconds.solve,
+                seconds.output
+            ),
+        ),
+        ("files", format!("{}/{{{SOLUTION}, {SUMMARY}}}", folder.display())),
+    ];
+    format!("{}\n{}", wrapped(&summary.title, 2), fields(&rows))
+}

@@ -1,0 +1,112 @@
+//! The solution of a stack as a VTK unstructured grid.
+
+use std::io::{self, Write};
+
+use crate::action::StackSolution;
+use crate::discretization::StackDiscretization;
+use crate::formats::vtk::{Cells, DataArray, Location, VTK_TRIANGLE, write_grid};
+use crate::mesh::Mesh;
+
+/// Writes `solution.vtu` of a stack: the mesh, with point data `u1` ... `uN`, `ceiling` and `floor` where they are; for each
+/// gap `gap`, `lambda`, `force` (the nodal forces) and `contact`, with the number of the gap behind the name (`gap_1`) when
+/// there are several. With `groups`, each curve of the mesh as point data `curve NAME` and each region as cell data
+/// `region NAME` (0 or 1). Binary, compressed by zlib; ParaView, PyVista and meshio read it.
+///
+/// # Errors
+/// When writing fails.
+pub fn write_stack_vtu(
+    d: &StackDiscretization,
+    solution: &StackSolution,
+    groups: bool,
+    out: impl Write,
+) -> io::Result<()> {
+    let mesh = d.mesh();
+    let displacements = (1..).zip(solution.displacement());
+    let mut points: Vec<DataArray> =
+        displacements.map(|(i, u)| DataArray::floats(format!("u{i}"), u.iter().copied())).collect();
+    for (name, obstacle) in ["ceiling", "floor"].into_iter().zip(d.obstacles()) {
+        points.extend(obstacle.map(|heights| DataArray::floats(name, heights.iter().copied())));
+    }
+    let several = solution.gaps().len() > 1;
+    for gap in solution.gaps() {
+        let named = |name: &str| if several { format!("{name}_{}", gap.number) } else { name.into() };
+        points.push(DataArray::floats(named("gap"), gap.gap.iter().copied()));
+        points.push(DataArray::floats(named("lambda"), gap.lambda.iter().copied()));
+        points.push(DataArray::floats(named("force"), gap.force.iter().copied()));
+        points.push(DataArray::flags(named("contact"), gap.contact.iter().copied()));
+    }
+    let mut cells = Vec::new();
+    if groups {
+        points.extend(curves(mesh));
+        cells.extend(regions(mesh));
+    }
+    let triangles = Cells::new(VTK_TRIANGLE, mesh.triangles().iter().copied());
+    write_grid(out, mesh.points(), &triangles, &[(Location::Points, &points), (Location::Cells, &cells)])
+}
+
+/// Whether a vertex lies on each curve.
+fn curves(mesh: &Mesh) -> impl Iterator<Item = DataArray> {
+    let names = mesh.groups().curves().iter();
+    names.map(|name| {
+        let mut on_curve = vec![false; mesh.points().len()];
+        let edges = mesh.groups().curve(name).into_iter().flatten();
+        edges.flatten().for_each(|a| on_curve[a] = true);
+        DataArray::flags(format!("curve {name}"), on_curve)
+    })
+}
+
+/// Whether a triangle lies in each region.
+fn regions(mesh: &Mesh) -> impl Iterator<Item = DataArray> {
+    let names = mesh.groups().regions().iter();
+    names.map(|name| {
+        let mut in_region = vec![false; mesh.triangles().len()];
+        mesh.groups().region(name).into_iter().flatten().for_each(|t| in_region[t] = true);
+        DataArray::flags(format!("region {name}"), in_region)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::action::certify_stack;
+    use crate::formats::vtk::samples::{floats, read_array};
+    use crate::mesh::{Pattern, rectangle};
+    use crate::problem::{ContactProblem, Membrane};
+    use crate::solver::{Auto, SolverOptions, StackSolver};
+
+    fn file(problem: &ContactProblem, groups: bool) -> (String, StackSolution) {
+        let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [8; 2], Pattern::Right).unwrap();
+        let mesh = mesh.with_region("left & half", |[x, _]| x < 0.5).unwrap();
+        let d = StackDiscretization::new(problem, mesh).unwrap();
+        let candidate = Auto.solve_stack(&d, &SolverOptions::default()).unwrap();
+        let solution = certify_stack(&d, candidate, 1e-8).unwrap();
+        let mut file = Vec::new();
+        write_stack_vtu(&d, &solution, groups, &mut file).unwrap();
+        (String::from_utf8(file).unwrap(), solution)
+    }
+
+    #[test]
+    fn one_gap_has_the_names_of_the_pair_and_several_have_numbers() {
+        let sheet = || Membrane::new(1.0).load(-20.0);
+        let (one, solution) = file(&ContactProblem::obstacle(sheet(), -0.2).unwrap(), false);
+        for (name, expected) in [("u1", &solution.displacement()[0]), ("lambda", &solution.gaps()[0].lambda)]
+        {
+            assert_eq!(&floats(&read_array(&one, name).unwrap()), expected);
+        }
+        assert_eq!(floats(&read_array(&one, "floor").unwrap()), vec![-0.2; 81]);
+        let absent = ["u2", "gap_1", "ceiling", "curve left", "region left &amp; half"];
+        assert!(absent.iter().all(|name| read_array(&one, name).is_none()));
+
+        let two = ContactProblem::stack().membrane(sheet()).membrane(sheet().load(1.0)).floor(-0.2);
+        let (two, solution) = file(&two.build().unwrap(), true);
+        for gap in solution.gaps() {
+            let read = |name: &str| read_array(&two, &format!("{name}_{}", gap.number)).unwrap();
+            assert_eq!((floats(&read("gap")), floats(&read("force"))), (gap.gap.clone(), gap.force.clone()));
+            let contact: Vec<bool> = read("contact").iter().map(|&flag| flag == 1).collect();
+            assert_eq!(contact, gap.contact);
+        }
+        assert!(read_array(&two, "gap").is_none());
+        let count = |name: &str| read_array(&two, name).unwrap().iter().filter(|&&flag| flag == 1).count();
+        assert_eq!((count("curve left"), count("region left &amp; half")), (9, 64));
+    }
+}
