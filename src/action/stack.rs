@@ -4,8 +4,6 @@ mod chains;
 mod projection;
 mod residuals;
 mod solution;
-#[cfg(test)]
-mod tests;
 
 pub use solution::{GapSolution, StackSolution};
 

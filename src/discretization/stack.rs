@@ -7,8 +7,6 @@ mod membrane;
 mod obstacles;
 mod scales;
 mod supports;
-#[cfg(test)]
-mod tests;
 
 use std::sync::Arc;
 

@@ -11,6 +11,9 @@ use crate::formats::gmsh::PhysicalGroup;
 use crate::mesh::Mesh;
 use crate::solver::Statistics;
 
+/// Why there is no bound of the error of a stack.
+const NO_BOUND: &str = "no bound yet for other stacks than the pair: compare with a finer mesh";
+
 /// The contents of `summary.json`, field by field. Other programs read the names.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Summary {
@@ -76,6 +79,9 @@ pub struct Summary {
     pub cut_off: Option<CutOff>,
     /// A bound of the energy error, guaranteed up to the quadrature of the loads; absent when not certified.
     pub error_bound: Option<f64>,
+    /// Why there is no bound of a certified solution.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub no_error_bound: Option<&'static str>,
     /// The bound relative to the energy norm of the exact solution; absent also when it is too large to know that.
     pub relative_error_bound: Option<f64>,
     /// What the bound consists of; absent when not certified.
@@ -236,6 +242,7 @@ impl Summary {
             reactions: solution.map(|solution| solution.reactions().to_vec()),
             force_imbalance: solution.map(StackSolution::imbalance),
             cut_off: solution.map(StackSolution::cut_off),
+            no_error_bound: solution.map(|_| NO_BOUND),
             ..Self::of_run(title, d.mesh(), tolerance, statistics, residuals, seconds)
         }
     }
@@ -282,6 +289,7 @@ impl Summary {
             force_imbalance: None,
             cut_off: None,
             error_bound: None,
+            no_error_bound: None,
             relative_error_bound: None,
             error_parts: None,
             quadrature_difference: None,

@@ -54,14 +54,19 @@ impl StackSolver for Auto {
         options: &SolverOptions,
     ) -> Result<StackCandidate, SolverError> {
         let mut candidate = super::ActiveSet.solve_stack(d, options)?;
-        let found = match (d.membranes(), d.has_obstacles()) {
-            (1, [false, false]) => "one membrane without an obstacle".to_string(),
-            (1, _) => "one membrane with an obstacle".into(),
-            (n, [false, false]) => format!("{n} coupled membranes"),
-            (n, _) => format!("{n} coupled membranes with an obstacle"),
+        let membranes = match d.membranes() {
+            1 => "one membrane".to_string(),
+            n => format!("{n} coupled membranes"),
+        };
+        let obstacles = match d.has_obstacles() {
+            [false, false] => "",
+            [true, false] => " under a ceiling",
+            [false, true] => " over a floor",
+            [true, true] => " between a ceiling and a floor",
         };
         let unknowns = grouped(d.unknowns());
-        candidate.statistics.choice = Some(format!("by {}: {found} ({unknowns} unknowns)", self.name()));
+        candidate.statistics.choice =
+            Some(format!("by {}: {membranes}{obstacles} ({unknowns} unknowns)", self.name()));
         Ok(candidate)
     }
 }

@@ -23,9 +23,6 @@ use crate::qp::{Status, TimeLimit};
 use crate::solver::{PolishReport, Statistics};
 use crate::text::grouped;
 
-/// Why there is no bound, as the summary and the terminal have it.
-const NO_BOUND: &str = "no bound of the error yet: for other stacks than the pair, compare with a finer mesh";
-
 pub(super) fn run(
     setup: &Setup,
     arguments: &SolveArguments,
@@ -85,10 +82,7 @@ fn summary(
     seconds: Seconds,
 ) -> Summary {
     let tolerance = setup.case.solver.tolerance.or_default();
-    let mut summary =
-        Summary::of_stack(&setup.case.title, d, tolerance, result, seconds).with_unused_groups(&setup.groups);
-    summary.warnings.push(NO_BOUND.into());
-    summary
+    Summary::of_stack(&setup.case.title, d, tolerance, result, seconds).with_unused_groups(&setup.groups)
 }
 
 /// What to do when the solver does not come back in time.
@@ -152,6 +146,7 @@ fn table(summary: &Summary, polish: Option<PolishReport>, unknowns: usize, folde
         ("chosen", summary.choice.clone().unwrap_or_default()),
         ("polish", polish.map_or_else(String::new, polish_line)),
         ("certified", certified_line(summary)),
+        ("error", summary.no_error_bound.unwrap_or_default().into()),
         ("energy", number(summary.energy)),
         ("contact", contacts.iter().map(contact).collect::<Vec<_>>().join("\n")),
         ("supports", reactions.join(", ")),
@@ -159,7 +154,6 @@ fn table(summary: &Summary, polish: Option<PolishReport>, unknowns: usize, folde
             "all forces",
             summary.force_imbalance.map_or_else(String::new, |left| format!("balanced up to {left:.1e}")),
         ),
-        ("warning", summary.warnings.join("\n")),
         (
             "seconds",
             format!(
