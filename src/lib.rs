@@ -35,12 +35,14 @@ pub use sprs;
 
 /// What most programs need: `use membrane_contact::prelude::*`.
 pub mod prelude {
-    pub use crate::action::{ContactSolution, certify};
-    pub use crate::discretization::Discretization;
+    pub use crate::action::{ContactSolution, StackSolution, certify, certify_stack};
+    pub use crate::discretization::{Discretization, StackDiscretization};
     pub use crate::estimate::ErrorBound;
     pub use crate::mesh::{Mesh, MeshSize, Pattern, disk, generate, l_shape, polygon, rectangle};
-    pub use crate::problem::{ContactProblem, Domain, Expression, Function};
-    pub use crate::solver::{ActiveSet, Auto, ContactSolver, Multigrid, QpSolver, SolverOptions};
+    pub use crate::problem::{ContactProblem, Domain, Expression, Field, Function, Membrane};
+    pub use crate::solver::{
+        ActiveSet, Auto, ContactSolver, Multigrid, QpSolver, SolverOptions, StackSolver,
+    };
     pub use crate::study::{Solved, solve};
 }
 

@@ -32,6 +32,18 @@ pub type Displacements = Vec<Vec<f64>>;
 /// From the top, layer 0 is the ceiling, `1 ..= N` are the membranes, `N + 1` is the floor; gap `k` lies between layers `k` and
 /// `k + 1`. Unknown are the displacements at all vertices where a membrane is not fixed. On a triangle the tension is its mean;
 /// the foundation is lumped with its mean: `C_i = diag(sum_K c_K |K| / 3)`, and belongs to `K_i`.
+///
+/// ```
+/// use membrane_contact::prelude::*;
+///
+/// let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [16, 16], Pattern::Right)?;
+/// let values: Vec<f64> = mesh.points().iter().map(|&[x, y]| -10.0 * x * y).collect();
+/// let sheet = Membrane::new(1.0).load(Field::PerVertex(values.into()));
+/// let d = StackDiscretization::new(&ContactProblem::obstacle(sheet, -0.05)?, mesh)?;
+/// let solution = certify_stack(&d, Auto.solve_stack(&d, &SolverOptions::default())?, 1e-8)?;
+/// assert!(solution.gap(1).is_some_and(|gap| gap.total_force > 0.0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct StackDiscretization {
     mesh: Arc<Mesh>,

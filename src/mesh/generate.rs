@@ -27,6 +27,13 @@ pub enum MeshSize {
         /// How a cell is divided (not for the disk, which has rings).
         pattern: Pattern,
     },
+    /// A structured mesh of a rectangle with these numbers of cells along `x` and `y`.
+    Grid {
+        /// Numbers of cells.
+        cells: [usize; 2],
+        /// How a cell is divided.
+        pattern: Pattern,
+    },
     /// An unstructured mesh.
     EdgeLength {
         /// Target edge length.
@@ -46,8 +53,15 @@ pub enum MeshSize {
 pub fn generate(domain: &Domain, size: MeshSize) -> Result<Mesh, GenerateError> {
     check_extent(domain)?;
     match size {
-        MeshSize::Cells { cells: 0, .. } => Err(GenerateError::NoCells),
+        MeshSize::Cells { cells: 0, .. } | MeshSize::Grid { cells: [0, _] | [_, 0], .. } => {
+            Err(GenerateError::NoCells)
+        }
         MeshSize::Cells { cells, pattern } => structured(domain, cells, pattern),
+        MeshSize::Grid { cells, pattern } => {
+            let Domain::Rectangle { lower, upper } = *domain else { return Err(GenerateError::Grid) };
+            check_vertex_estimate(estimated_vertices(domain, size))?;
+            rectangle(lower, upper, cells, pattern).map_err(|_| GenerateError::Rounding)
+        }
         MeshSize::EdgeLength { size, .. } if !(size > 0.0 && size.is_finite()) => {
             Err(GenerateError::Size { size })
         }
@@ -63,15 +77,20 @@ pub fn estimated_vertices(domain: &Domain, size: MeshSize) -> f64 {
             let per_cell = if pattern == Pattern::Crossed { 2.0 } else { 1.0 };
             match domain {
                 Domain::Rectangle { lower, upper } => {
-                    let [a, b] = cells_along(*lower, *upper, n);
-                    per_cell * (a + 1.0) * (b + 1.0)
+                    vertices_of_grid(cells_along(*lower, *upper, n), pattern)
                 }
                 Domain::LShape { .. } => per_cell * 3.0 * n * n,
                 Domain::Disk { .. } | Domain::Polygon { .. } => 3.0 * n * n,
             }
         }
+        MeshSize::Grid { cells, pattern } => vertices_of_grid(cells.map(|n| n as f64), pattern),
         MeshSize::EdgeLength { size, .. } => domain.area() / largest_triangle(size),
     }
+}
+
+fn vertices_of_grid([a, b]: [f64; 2], pattern: Pattern) -> f64 {
+    let per_cell = if pattern == Pattern::Crossed { 2.0 } else { 1.0 };
+    per_cell * (a + 1.0) * (b + 1.0)
 }
 
 /// Cells along both sides of a rectangle with `n` along the shorter one.

@@ -28,6 +28,7 @@ mod readme;
 mod resume;
 mod same_bytes;
 mod stability;
+mod stacks;
 mod surroundings;
 mod terminal;
 mod theory;

@@ -9,8 +9,10 @@ use super::problem::{exact_case, problem};
 use super::section::Section;
 use super::solver::{SolverSettings, solver};
 use crate::cli::failure::Failure;
+use crate::discretization::IntegrationRule;
 use crate::formats::open_regular;
-use crate::problem::{ContactProblem, Domain, ExactSolution};
+use crate::problem::{ContactProblem, Domain, ExactSolution, Pair};
+use crate::text::excerpt;
 
 /// Longest case file, bytes: a polygon of half a million corners. Its tables take a few hundred times as much memory.
 const MAX_BYTES: u64 = 1 << 24;
@@ -22,6 +24,8 @@ pub struct CaseFile {
     pub title: String,
     /// The problem.
     pub problem: ContactProblem,
+    /// How its data are integrated.
+    pub integration: IntegrationRule,
     /// The exact solution, for a built-in case.
     pub exact: Option<ExactSolution>,
     /// Where the mesh comes from.
@@ -59,12 +63,21 @@ impl CaseFile {
         let mut top = Section::top(name, text)?;
         let stem = path.file_stem().map_or_else(|| name.into(), |stem| stem.to_string_lossy().into_owned());
         let title = top.text("title")?.unwrap_or(stem);
+        let integration = integration(&mut top)?;
         let exact = exact_case(&mut top)?;
+        if exact.is_some() && integration != IntegrationRule::default() {
+            return Err(top.error("integration", "is given by the case already: remove it"));
+        }
         let problem = problem(&mut top, exact.as_ref())?;
         let (mesh, refine) = mesh(&mut top, exact.as_ref(), path)?;
         let solver = solver(&mut top)?;
         top.finish()?;
-        Ok(Self { title, problem, exact, mesh, refine, solver })
+        Ok(Self { title, problem, integration, exact, mesh, refine, solver })
+    }
+
+    /// The paper's pair, if it is one, and is to be integrated as such.
+    pub(crate) fn pair(&self) -> Option<&Pair> {
+        self.problem.as_pair().filter(|_| self.integration == IntegrationRule::default())
     }
 
     /// The domain, where it is not given by a mesh file.
@@ -72,6 +85,18 @@ impl CaseFile {
         match &self.mesh {
             MeshSource::File(_) => None,
             MeshSource::Generator { domain, .. } => Some(domain),
+        }
+    }
+}
+
+/// `integration = "quadrature"` or `"vertices"`.
+fn integration(top: &mut Section) -> Result<IntegrationRule, Failure> {
+    match top.text("integration")?.as_deref() {
+        None | Some("quadrature") => Ok(IntegrationRule::Quadrature),
+        Some("vertices") => Ok(IntegrationRule::Vertices),
+        Some(other) => {
+            let known = "choose quadrature or vertices";
+            Err(top.error("integration", format!("= \"{}\" is unknown: {known}", excerpt(other))))
         }
     }
 }

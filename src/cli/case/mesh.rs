@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use toml::Value;
+
 use super::section::Section;
 use crate::cli::failure::Failure;
 use crate::mesh::{MeshSize, Pattern};
@@ -116,8 +118,29 @@ fn domain(section: &mut Section, shape: &str) -> Result<Domain, Failure> {
     })
 }
 
+/// Cells of a structured mesh.
+enum Cells {
+    /// Along the shorter side.
+    Across(usize),
+    /// Along `x` and `y`.
+    Along([usize; 2]),
+}
+
+/// `cells = 64` or `cells = [64, 32]`.
+fn cells(section: &mut Section) -> Result<Option<Cells>, Failure> {
+    let Some(value) = section.take("cells") else { return Ok(None) };
+    let count = |value: &Value| value.as_integer().and_then(|n| usize::try_from(n).ok()).filter(|&n| n > 0);
+    let cells = match value.as_array().map(Vec::as_slice) {
+        Some([x, y]) => count(x).zip(count(y)).map(|(x, y)| Cells::Along([x, y])),
+        Some(_) => None,
+        None => count(&value).map(Cells::Across),
+    };
+    let must = "must be a whole number, at least 1, or two of them for a rectangle: [along x, along y]";
+    cells.map(Some).ok_or_else(|| section.error("cells", must))
+}
+
 fn mesh_size(section: &mut Section, domain: &Domain) -> Result<MeshSize, Failure> {
-    let cells = section.count("cells", 1)?;
+    let cells = cells(section)?;
     let size = section.number("size")?;
     let pattern = section.text("pattern")?;
     let min_angle = section.number("min_angle")?;
@@ -149,7 +172,10 @@ fn mesh_size(section: &mut Section, domain: &Domain) -> Result<MeshSize, Failure
                     ));
                 }
             };
-            Ok(MeshSize::Cells { cells: cells.unwrap_or(DEFAULT_CELLS), pattern })
+            Ok(match cells.unwrap_or(Cells::Across(DEFAULT_CELLS)) {
+                Cells::Across(cells) => MeshSize::Cells { cells, pattern },
+                Cells::Along(cells) => MeshSize::Grid { cells, pattern },
+            })
         }
     }
 }

@@ -83,7 +83,7 @@ pub(crate) fn run(arguments: &CheckArguments, watch: &Watch) -> Result<(), Failu
     if let Some(tolerance) = arguments.tolerance {
         setup.case.solver.tolerance = Tolerance::Fixed(tolerance);
     }
-    let is_pair = setup.case.problem.as_pair().is_some();
+    let is_pair = setup.case.pair().is_some();
     if arguments.answer.is_none() {
         for name in solvers(is_pair) {
             setup.check_memory(name)?;

@@ -59,7 +59,7 @@ enum Posed {
 
 impl Posed {
     fn new(setup: &Setup, progress: &Progress) -> Result<Self, Failure> {
-        Ok(match setup.case.problem.as_pair() {
+        Ok(match setup.case.pair() {
             Some(_) => Self::Pair(Box::new(setup.discretize(progress)?.0)),
             None => Self::Stack(Box::new(setup.discretize_stack(progress)?.0)),
         })

@@ -41,7 +41,7 @@ pub(crate) fn run(arguments: &SolveArguments, watch: &Watch) -> Result<(), Failu
     let mut setup = Setup::new(&arguments.case, &progress)?;
     override_settings(&mut setup, arguments, &clock);
     setup.check_memory(setup.case.solver.name)?;
-    if setup.case.problem.as_pair().is_none() {
+    if setup.case.pair().is_none() {
         return stack::run(&setup, arguments, (&clock, watch), progress);
     }
     let (d, seconds) = setup.discretize(&progress)?;

@@ -64,10 +64,10 @@ impl Setup {
 
     /// Refuses another stack than the paper's pair.
     pub(crate) fn require_pair(&self) -> Result<(), Failure> {
-        if self.case.problem.as_pair().is_some() {
+        if self.case.pair().is_some() {
             return Ok(());
         }
-        let pair = "two membranes of constant tension, held all around, the lower one at 0, without foundation or obstacle";
+        let pair = "two membranes of constant tension, held all around, the lower one at 0, without foundation or obstacle, integrated by quadrature";
         Err(Failure::Input(format!(
             "{}: so far, this command is for a pair: pose {pair}, or solve the stack as it is (`membranes solve`)",
             self.name
@@ -94,8 +94,12 @@ impl Setup {
         progress: &Progress,
     ) -> Result<(StackDiscretization, Seconds), Failure> {
         self.assemble(progress, || {
-            StackDiscretization::new(&self.case.problem, self.family.mesh().clone())
-                .map_err(|error| (error.vertex(), error.to_string()))
+            StackDiscretization::by_rule(
+                &self.case.problem,
+                self.family.mesh().clone(),
+                self.case.integration,
+            )
+            .map_err(|error| (error.vertex(), error.to_string()))
         })
     }
 

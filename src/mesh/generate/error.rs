@@ -14,6 +14,9 @@ pub(super) const MAX_MIN_ANGLE: f64 = 30.0;
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum GenerateError {
+    /// A grid of something else than a rectangle.
+    #[error("a grid with cells along x and y is for a rectangle: give one number of cells")]
+    Grid,
     /// No cells.
     #[error("cells is 0: give at least 1")]
     NoCells,

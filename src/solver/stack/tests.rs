@@ -2,6 +2,8 @@
 
 mod exact;
 mod properties;
+mod published;
+mod radial;
 
 use crate::action::{StackSolution, certify_stack};
 use crate::discretization::StackDiscretization;
