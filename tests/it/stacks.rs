@@ -95,7 +95,10 @@ fn a_group_that_no_datum_mentions_is_named() {
     let table = unused(MATERIALS);
     assert!(table.contains("physical groups not used: top, curves 7, all of it\n"), "{table}");
     let table = unused(&MATERIALS.replace("{ rubber = 1, steel = 3 }", "1"));
-    assert!(table.contains("physical groups not used: top, curves 7, rubber, steel, and 1 more\n"), "{table}");
+    assert!(
+        table.contains("physical groups not used: top, curves 7, rubber, steel, and 1 more\n"),
+        "{table}"
+    );
 }
 
 #[test]
@@ -145,6 +148,21 @@ fn commands_for_a_pair_say_so() {
         let refused = run(folder.path(), command);
         assert_eq!((refused.code, refused.stderr.lines().count()), (Some(2), 1), "{command}: {refused:?}");
     }
+}
+
+#[test]
+fn each_membrane_counts_for_the_memory() {
+    let many = |n: usize| {
+        let membranes = vec!["{ tension = 1 }"; n].join(", ");
+        folder_with(&format!(
+            "membrane = [{membranes}]\ndomain = {{ shape = \"square\" }}\nmesh = {{ cells = 16 }}\n"
+        ))
+    };
+    let limited = |n: usize| run(many(n).path(), "solve case.toml --memory-limit 0.2");
+    assert_eq!(limited(3).code, Some(0));
+    let refused = limited(1000);
+    assert_eq!(refused.code, Some(2));
+    assert!(refused.stderr.contains("about 289 vertices of 1,000 membranes need"), "{}", refused.stderr);
 }
 
 #[test]

@@ -40,16 +40,29 @@ impl Memory {
 
     /// Refuses a run on so many vertices that has not enough.
     pub(crate) fn check(self, name: &str, solver: SolverName, vertices: f64) -> Result<(), Failure> {
-        if self.suffices(solver, vertices) {
+        self.check_stack(name, solver, vertices, 1)
+    }
+
+    /// Likewise of a run on a stack: each membrane needs at most what a pair does.
+    pub(crate) fn check_stack(
+        self,
+        name: &str,
+        solver: SolverName,
+        vertices: f64,
+        membranes: usize,
+    ) -> Result<(), Failure> {
+        let all = vertices * membranes as f64;
+        if self.suffices(solver, all) {
             return Ok(());
         }
-        let [needed, available] = [needed(solver, vertices), self.0].map(|bytes| bytes / GIB);
+        let of = if membranes == 1 { String::new() } else { format!(" of {} membranes", grouped(membranes)) };
+        let [needed, available] = [needed(solver, all), self.0].map(|bytes| bytes / GIB);
         let other = match solver {
             SolverName::Auto | SolverName::Multigrid => "",
             _ => " or the solver multigrid",
         };
         Err(Failure::Input(format!(
-            "{name}: about {} vertices need about {needed:.2} GiB of memory, and {available:.2} are available: take a coarser mesh{other}, or allow more with --memory-limit",
+            "{name}: about {} vertices{of} need about {needed:.2} GiB of memory, and {available:.2} are available: take a coarser mesh{other}, or allow more with --memory-limit",
             grouped(vertices.round() as usize)
         )))
     }

@@ -76,7 +76,9 @@ impl Setup {
 
     /// Refuses a solver that needs more memory on this mesh than there is.
     pub(crate) fn check_memory(&self, name: SolverName) -> Result<(), Failure> {
-        self.memory.check(&self.name, name, self.family.mesh().points().len() as f64)
+        let vertices = self.family.mesh().points().len() as f64;
+        let membranes = if self.case.pair().is_some() { 1 } else { self.case.problem.membranes().len() };
+        self.memory.check_stack(&self.name, name, vertices, membranes)
     }
 
     /// Assembles the discrete problem of the pair, and says how long it took.
