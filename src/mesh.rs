@@ -30,4 +30,4 @@ pub use triangulation::{Mesh, VertexKind};
 #[cfg(feature = "cli")]
 pub(crate) use generate::MAX_VERTICES;
 pub(crate) use refine::Circle;
-pub(crate) use topology::{HalfEdges, VertexTriangles, boundary_edges, corner_of};
+pub(crate) use topology::{HalfEdge, HalfEdges, VertexTriangles, boundary_edges, corner_of};

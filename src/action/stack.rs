@@ -1,6 +1,7 @@
 //! The certificate of a stack, and its certified solution.
 
 mod chains;
+mod lines;
 mod projection;
 mod residuals;
 mod solution;

@@ -15,12 +15,12 @@ use sprs::CsMat;
 use super::Scales;
 use crate::fem::weighted_stiffness;
 use crate::mesh::{Mesh, VertexTriangles};
-use crate::problem::ContactProblem;
+use crate::problem::{ContactProblem, Field};
 
 pub(crate) use chain::{Layer, Segment, segments};
 pub use error::StackError;
 pub use fields::IntegrationRule;
-use fields::{POSITIVE, means};
+use fields::{POSITIVE, borders, means};
 use membrane::MembraneData;
 use obstacles::{check_order, obstacle};
 
@@ -52,6 +52,8 @@ pub struct StackDiscretization {
     stiffness: Vec<CsMat<f64>>,
     /// Ceiling and floor over vertices.
     obstacles: [Option<Vec<f64>>; 2],
+    /// The edges between the regions by which they are given.
+    obstacle_lines: [Vec<[usize; 2]>; 2],
     rows: Vec<GapRow>,
     /// Where the rows of gap `k` begin, and where the last ones end.
     row_start: Vec<usize>,
@@ -119,6 +121,10 @@ impl StackDiscretization {
             obstacle(mesh, problem.ceiling(), "the ceiling", f64::min)?,
             obstacle(mesh, problem.floor(), "the floor", f64::max)?,
         ];
+        let lines = |field: Option<&Field>, name: &str| {
+            field.map_or(Ok(Vec::new()), |field| borders(mesh, field, name))
+        };
+        let obstacle_lines = [lines(problem.ceiling(), "the ceiling")?, lines(problem.floor(), "the floor")?];
         check_order(mesh, &membranes, &mut obstacles)?;
         let scales = scales::scales(mesh, &membranes, &tensions, &obstacles, &dual_area);
         scales::check_range(&scales, &tensions)?;
@@ -126,6 +132,7 @@ impl StackDiscretization {
             membranes,
             stiffness,
             obstacles,
+            obstacle_lines,
             rows: Vec::new(),
             row_start: vec![0],
             unknowns,
@@ -201,6 +208,21 @@ impl StackDiscretization {
     /// The sizes that residuals are measured against.
     pub fn scales(&self) -> Scales {
         self.scales
+    }
+
+    /// The edges along which the action in gap `k` may have a density of its own: those where one of the membranes is free or its
+    /// tension jumps from one region to another, and those where an obstacle is given by another region; the lower end first.
+    pub(crate) fn lines(&self, k: usize) -> Vec<[usize; 2]> {
+        let last = self.membranes.len() + 1;
+        let of_layer = |layer: usize| match layer {
+            0 => &self.obstacle_lines[0],
+            _ if layer == last => &self.obstacle_lines[1],
+            _ => &self.membranes[layer - 1].lines,
+        };
+        let mut lines = [of_layer(k).as_slice(), of_layer(k + 1)].concat();
+        lines.sort_unstable();
+        lines.dedup();
+        lines
     }
 
     /// Where the first unknown of membrane `i` (from 1) is.

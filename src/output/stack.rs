@@ -8,7 +8,7 @@ use crate::formats::vtk::{Cells, DataArray, Location, VTK_TRIANGLE, write_grid};
 use crate::mesh::Mesh;
 
 /// Writes `solution.vtu` of a stack: the mesh, with point data `u1` ... `uN`, `ceiling` and `floor` where they are; for each
-/// gap `gap`, `lambda`, `force` (the nodal forces) and `contact`, with the number of the gap behind the name (`gap_1`) when
+/// gap `gap`, `lambda`, `force` (the nodal forces), `line_density` and `contact`, with the number of the gap behind the name (`gap_1`) when
 /// there are several. With `groups`, each curve of the mesh as point data `curve NAME` and each region as cell data
 /// `region NAME` (0 or 1). Binary, compressed by zlib; ParaView, PyVista and meshio read it.
 ///
@@ -33,6 +33,7 @@ pub fn write_stack_vtu(
         points.push(DataArray::floats(named("gap"), gap.gap.iter().copied()));
         points.push(DataArray::floats(named("lambda"), gap.lambda.iter().copied()));
         points.push(DataArray::floats(named("force"), gap.force.iter().copied()));
+        points.push(DataArray::floats(named("line_density"), gap.line_density.iter().copied()));
         points.push(DataArray::flags(named("contact"), gap.contact.iter().copied()));
     }
     let mut cells = Vec::new();

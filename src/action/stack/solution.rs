@@ -1,5 +1,6 @@
 //! A certified solution of a stack.
 
+use super::lines::line_density;
 use super::projection::Projection;
 use crate::action::{CutOff, Residuals};
 use crate::discretization::{Displacements, StackDiscretization};
@@ -35,6 +36,9 @@ pub struct GapSolution {
     /// `lambda_a = y_a / |D_a|`. Unit: force per area. Along lines that carry a force of their own (free edges in contact, jumps of
     /// the ratio of tensions inside a contact zone, kinks of an obstacle) it grows like `1/h`, and the nodal forces count.
     pub lambda: Vec<f64>,
+    /// The density of the action along such lines, as far as the data name them: free edges, edges with a line load, and the borders
+    /// of regions by which tensions or obstacles are given; zero elsewhere. There, `lambda` has it in itself. Unit: force per length.
+    pub line_density: Vec<f64>,
     /// Whether the layers touch, with a force or without; false where both are held.
     pub contact: Vec<bool>,
     /// The area of the dual cells in contact.
@@ -62,6 +66,7 @@ impl GapSolution {
             number,
             gap: (0..vertices).map(gap_at).collect(),
             lambda: force.iter().zip(area).map(per_area).collect(),
+            line_density: line_density(d, number, &force, &contact),
             force,
             contact,
             contact_area,

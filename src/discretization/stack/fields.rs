@@ -2,7 +2,7 @@
 
 use super::error::{StackError, known};
 use crate::fem::integrals_on;
-use crate::mesh::{Mesh, VertexKind};
+use crate::mesh::{HalfEdge, HalfEdges, Mesh, VertexKind};
 use crate::problem::{Field, Function};
 
 /// How data are integrated over a triangle.
@@ -74,6 +74,23 @@ fn divide<'f>(
         (Some(field), rest) => divide(mesh, field, rest, datum, pieces),
         (None, rest) => Err(StackError::NotCovered { datum: datum.into(), point: barycentre(mesh, rest[0]) }),
     }
+}
+
+/// The edges between triangles on which a field is given by different parts of it, the lower end first.
+pub(super) fn borders(mesh: &Mesh, field: &Field, datum: &str) -> Result<Vec<[usize; 2]>, StackError> {
+    if field.names().next().is_none() {
+        return Ok(Vec::new());
+    }
+    let mut piece_of = vec![usize::MAX; mesh.triangles().len()];
+    for (k, piece) in pieces(mesh, field, datum)?.iter().enumerate() {
+        piece.triangles.iter().for_each(|&t| piece_of[t] = k);
+    }
+    let half_edges = HalfEdges::new(mesh.points().len(), mesh.triangles());
+    let is_border = |sides: &[HalfEdge]| {
+        sides.windows(2).any(|pair| piece_of[pair[0].triangle] != piece_of[pair[1].triangle])
+    };
+    let edges = half_edges.edges().filter(|(_, _, sides)| is_border(sides));
+    Ok(edges.map(|(lower, upper, _)| [lower, upper]).collect())
 }
 
 fn barycentre(mesh: &Mesh, t: usize) -> [f64; 2] {

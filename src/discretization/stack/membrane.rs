@@ -1,7 +1,7 @@
 //! One membrane of a stack on a mesh.
 
 use super::error::StackError;
-use super::fields::{IntegrationRule, NOT_NEGATIVE, integrals, means};
+use super::fields::{IntegrationRule, NOT_NEGATIVE, borders, integrals, means};
 use super::supports::Held;
 use crate::mesh::{Mesh, VertexKind, VertexTriangles, corner_of};
 use crate::parallel::prelude::*;
@@ -23,6 +23,9 @@ pub(crate) struct MembraneData {
     /// The vertices with an unknown, in increasing order; they are numbered from `first`.
     pub(super) vertices: Vec<usize>,
     pub(super) first: usize,
+    /// Edges along which it may push or be pushed by a force along a line: where it is free, and where its tension jumps from one
+    /// region to another.
+    pub(super) lines: Vec<[usize; 2]>,
 }
 
 impl MembraneData {
@@ -53,6 +56,8 @@ impl MembraneData {
         for (k, &a) in vertices.iter().enumerate() {
             number[a] = Some(u32::try_from(first + k).expect("fewer than 2^32 unknowns"));
         }
+        let mut lines = held.free_edges;
+        lines.extend(borders(mesh, &membrane.tension, &format!("tension mu{name}"))?);
         Ok(Self {
             factor,
             profile,
@@ -62,6 +67,7 @@ impl MembraneData {
             number,
             vertices,
             first,
+            lines,
         })
     }
 

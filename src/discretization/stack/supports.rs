@@ -21,6 +21,8 @@ pub(super) struct Held {
     pub(super) height: Vec<Option<f64>>,
     /// `int t phi_a` over the free edges. Shape: `vertices`; unit: force.
     pub(super) line_load: Vec<f64>,
+    /// The edges where it is free on the boundary, and those that carry a line load.
+    pub(super) free_edges: Vec<[usize; 2]>,
 }
 
 impl Held {
@@ -48,10 +50,11 @@ impl Held {
                 });
             }
         }
-        let mut held = Self { height, line_load: vec![0.0; mesh.points().len()] };
+        let mut held = Self { height, line_load: vec![0.0; mesh.points().len()], free_edges: Vec::new() };
         for (support, edges) in &parts {
             if let Support::Free { traction } = support {
                 held.add_line_load(mesh, traction, edges, i)?;
+                held.free_edges.extend(edges);
             }
         }
         Ok(held)
@@ -104,12 +107,11 @@ fn sorted([a, b]: [usize; 2]) -> [usize; 2] {
     [a.min(b), a.max(b)]
 }
 
+/// How a membrane is held on some edges, the lower end of each first.
+type Part<'m> = (&'m Support, Vec<[usize; 2]>);
+
 /// The edges that each part of the data is for; those of the boundary that no part names belong to the rest.
-fn edges_of_parts<'m>(
-    mesh: &Mesh,
-    membrane: &'m Membrane,
-    i: usize,
-) -> Result<Vec<(&'m Support, Vec<[usize; 2]>)>, StackError> {
+fn edges_of_parts<'m>(mesh: &Mesh, membrane: &'m Membrane, i: usize) -> Result<Vec<Part<'m>>, StackError> {
     let groups = mesh.groups();
     let datum = || format!("the support of membrane {i}");
     let mut part_of: HashMap<[usize; 2], usize> = HashMap::new();

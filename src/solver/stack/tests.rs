@@ -11,7 +11,9 @@ use crate::mesh::Mesh;
 use crate::problem::ContactProblem;
 #[cfg(feature = "clarabel")]
 use crate::qp::Clarabel;
-use crate::solver::{ActiveSet, Auto, QpSolver, SolverOptions, StackSolver};
+#[cfg(any(feature = "clarabel", feature = "osqp"))]
+use crate::solver::QpSolver;
+use crate::solver::{ActiveSet, Auto, SolverOptions, StackSolver};
 
 /// What is asked of solvers and of the certificate.
 const TOLERANCE: f64 = 1e-9;

@@ -162,6 +162,11 @@ fn a_jump_of_the_tension_in_contact_carries_a_line_action() {
             let off = (gap.force[a] - expected).abs();
             assert!(off < if y == 0.0 || y == 0.5 { 1e-3 } else { ROUNDING }, "{name}: ({x}, {y}): {off:e}");
         }
+        // The line action as a density, away from the ends of the line.
+        let on_line = |(_, [x, y]): &(usize, &[f64; 2])| (x - 0.25).abs() < 1e-9 && *y > 0.1 && *y < 0.4;
+        for (a, _) in mesh.points().iter().enumerate().filter(on_line) {
+            assert!((gap.line_density[a] - 0.45).abs() < 1e-9, "{name}: {}", gap.line_density[a]);
+        }
     }
 }
 
@@ -230,6 +235,13 @@ fn line_loads_on_a_free_end_in_contact_are_a_line_action() {
             let off = (gap.force[a] - 2.0 * d.dual_area()[a] - 0.5 * edge).abs();
             assert!(off < ROUNDING, "{name}: ({x}, {y}): {off:e}");
         }
+        for (a, _) in
+            mesh.points().iter().enumerate().filter(|(_, p)| p[0] == 1.0 && p[1] > 0.1 && p[1] < 0.4)
+        {
+            assert!((gap.line_density[a] - 0.5).abs() < 1e-9, "{name}: {}", gap.line_density[a]);
+        }
+        let inside = mesh.points().iter().enumerate().filter(|(_, p)| p[0] < 1.0 && p[1] > 0.1 && p[1] < 0.4);
+        assert!(inside.into_iter().all(|(a, _)| gap.line_density[a] == 0.0));
     }
 }
 

@@ -37,7 +37,8 @@ fn torsion(load: f64) -> ContactProblem {
 /// CUTEst TORSIONA to TORSIONF: `2 Q - 1` cells.
 #[test]
 fn elastic_plastic_torsion() {
-    let tables: [(f64, &[(usize, f64, i32)]); 3] = [
+    type Row = (usize, f64, i32);
+    let tables: [(f64, &[Row]); 3] = [
         (5.0, &[(2, -0.30864, 5), (5, -0.4057, 4), (11, -0.41611, 5), (16, -0.4174, 4), (37, -0.4183, 4)]),
         (10.0, &[(2, -1.037, 3), (37, -1.2042, 4)]),
         (20.0, &[(2, -2.5185, 4), (37, -2.8502, 4)]),
