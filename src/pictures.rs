@@ -1,6 +1,7 @@
 //! Pictures of solutions, meshes and rates.
 
 mod drawing;
+mod plan;
 pub mod membranes;
 mod mesh;
 mod rates;
