@@ -5,6 +5,7 @@ mod plan;
 pub mod membranes;
 mod mesh;
 mod rates;
+pub mod stack;
 
 pub use drawing::encode::{Drawing, EncodingError, Format};
 pub use mesh::{MeshPicture, MeshPictureError, render_mesh, render_triangulation};

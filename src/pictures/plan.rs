@@ -9,7 +9,7 @@ mod error;
 
 pub(crate) use action::Action;
 pub(crate) use bars::Bars;
-pub(crate) use cells::{Cells, color_bar};
+pub(crate) use cells::{Cells, MOST_ELONGATED, color_bar};
 pub(crate) use cut::{Cut, middle, stretches};
 pub(crate) use domain::Domain;
 pub use error::PictureError;
