@@ -38,7 +38,7 @@ impl<'a> SectionPlot<'a> {
             }
         }
         self.membranes.rules(canvas, &self.height, 4);
-        self.bars.draw(canvas, &self.section.forces(), 3);
+        self.bars.draw(canvas, &self.section.forces(), &self.bars.axis.ticks(3));
         self.curve(canvas, 1, LOWER_LINE);
         self.curve(canvas, 0, UPPER_LINE);
         self.contact_curve(canvas);

@@ -1,7 +1,7 @@
 //! Lambda along the section as an area in the colours of the map.
 
 use super::action::Action;
-use crate::pictures::drawing::axis::Axis;
+use crate::pictures::drawing::axis::{Axis, Tick};
 use crate::pictures::drawing::canvas::{Anchor, Canvas};
 use crate::pictures::drawing::color::{INK, force};
 use crate::pictures::drawing::frame::{Frame, SMALL};
@@ -23,10 +23,10 @@ impl<'a> Bars<'a> {
         Bars { frame, axis: action.axis.widened([0.0, OVER_BARS]), action }
     }
 
-    /// Draws stretches of the section with one lambda each, about `count` rules, and the greatest lambda as a number.
-    pub(crate) fn draw(&self, canvas: &mut Canvas, forces: &[([f64; 2], f64)], count: usize) {
+    /// Draws stretches of the section with one lambda each, rules at the ticks, and the greatest lambda as a number.
+    pub(crate) fn draw(&self, canvas: &mut Canvas, forces: &[([f64; 2], f64)], ticks: &[Tick]) {
         if self.action.pressed {
-            self.frame.rules(canvas, &self.axis, count);
+            self.frame.rules_at(canvas, ticks);
         }
         let zero = self.axis.place(0.0);
         // Neighbours overlap a little: no paper shines through between them.

@@ -15,17 +15,17 @@ const UNDER_STRIPS: f64 = 90.0;
 /// Room for ticks left of the first column of maps.
 const LEFT: f64 = 100.0;
 /// Room right of each map for the colour bar and its ticks.
-const BESIDE_MAP: f64 = 172.0;
+const BESIDE_MAP: f64 = 184.0;
 /// Room above each map for its heading, and below it for the axis.
 const ABOVE_MAP: f64 = 106.0;
 const BELOW_MAP: f64 = 84.0;
 /// The least distance from one column to the next, for the headings.
 const COLUMN: f64 = 410.0;
-/// The height of one map, and of a column of maps, at most.
+/// The height of one map at most, and that of its row at least, for the colour bar.
 const HIGHEST_MAP: f64 = 380.0;
-const HIGHEST_COLUMN: f64 = 640.0;
-/// The least height of a row, for the colour bar.
 const ROW: f64 = 150.0;
+/// The height of a column of maps with all that is around them at most.
+const HIGHEST_COLUMN: f64 = 1100.0;
 /// Room for the line of text over all maps, and between the columns and the edge.
 const OVER_MAPS: f64 = 50.0;
 const EDGE: f64 = 10.0;
@@ -81,7 +81,9 @@ fn grid(count: usize, aspect: f64) -> (usize, [f64; 2]) {
     let most = ((room / COLUMN) as usize).min(count);
     let width = |columns: usize| {
         let rows = count.div_ceil(columns) as f64;
-        let height = HIGHEST_MAP.min(HIGHEST_COLUMN / rows);
+        let height = HIGHEST_COLUMN / rows - ABOVE_MAP - BELOW_MAP;
+        // More rows than fit are no choice.
+        let height = if height < ROW { 0.0 } else { height.min(HIGHEST_MAP) };
         (room / columns as f64 - BESIDE_MAP).min(height * aspect)
     };
     let wider = |best: usize, columns: usize| if width(columns) > width(best) { columns } else { best };

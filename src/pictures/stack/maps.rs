@@ -19,11 +19,11 @@ pub(super) fn draw(canvas: &mut Canvas, scene: &Scene, maps: &[Cells], cut: &Cut
     let what = if gaps == 0 {
         "From above".to_owned()
     } else {
-        "From above: contact and λ on the dual cells Dₐ, each gap with a scale of its own".to_owned()
+        "From above: contact and λ on the dual cells Dₐ, a scale for each gap".to_owned()
     };
     let left_out = match gaps - shown {
         0 => String::new(),
-        _ => format!("; {shown} of {gaps} gaps, those with the greatest force"),
+        _ => format!("; the {shown} of {gaps} gaps with the greatest force"),
     };
     let at = [layout.section.left, layout.maps_top + 24.0];
     canvas.text(&(what + &left_out), at, NORMAL, INK, Anchor::Left);

@@ -1,12 +1,12 @@
 //! The plot of the section: all layers, and where they touch.
 
-use super::scene::{Kind, Layer, Scene};
+use super::scene::{Gap, Kind, Layer, Scene};
 use super::section::{Sample, Section};
 use super::spread::{spread, spread_between};
 use super::walls;
 use crate::pictures::drawing::axis::{Axis, subscript, times};
 use crate::pictures::drawing::canvas::{Anchor, Canvas};
-use crate::pictures::drawing::color::{CONTACT, INK, LAYERS, Rgb};
+use crate::pictures::drawing::color::{CONTACT, INK};
 use crate::pictures::drawing::frame::{Frame, NORMAL, SMALL};
 
 /// Layers are drawn at least this far from each other, in pixels,
@@ -18,7 +18,7 @@ const SEAM: f64 = 0.66;
 /// Room above and below the curves, as part of their range: for those that are drawn side by side.
 const HEADROOM: f64 = 0.12;
 /// Obstacles are drawn this far off the membranes, as part of the range of these; farther ones are outside of the picture.
-const FAR: f64 = 0.6;
+const FAR: f64 = 2.0;
 /// How far outside of the frame obstacles that are not in it lie, in pixels: farther than membranes are moved.
 const OUTSIDE: f64 = 200.0;
 /// From the frame to the names of the layers.
@@ -43,7 +43,7 @@ impl<'a> SectionPlot<'a> {
         let on_canvas = |u: &f64| (frame.bottom() - height.place(*u) * frame.height).clamp(top, bottom);
         let drawn = |sample: &Sample| {
             let wanted: Vec<f64> = sample.heights.iter().map(on_canvas).collect();
-            spread(&wanted, apart)
+            spread(&wanted, |layer| scene.layers[layer].kind != Kind::Membrane, apart)
         };
         let layers = section.samples.iter().map(|sample| sample.as_ref().map(drawn)).collect();
         SectionPlot { scene, section, frame, height, apart, layers }
@@ -115,7 +115,7 @@ impl<'a> SectionPlot<'a> {
         let most = (self.frame.height / SMALL) as usize;
         let every = ends.len().div_ceil(most);
         let named: Vec<usize> = (0..ends.len()).step_by(every).collect();
-        let within = [self.frame.top, self.frame.bottom()];
+        let within = [self.frame.top + SMALL / 2.0, self.frame.bottom() - SMALL / 2.0];
         let wanted: Vec<f64> = named.iter().map(|&layer| ends[layer].clamp(within[0], within[1])).collect();
         for ((&layer, &from), to) in named.iter().zip(&wanted).zip(spread_between(&wanted, SMALL, within)) {
             let Layer { name, color, .. } = &self.scene.layers[layer];
@@ -138,10 +138,10 @@ impl<'a> SectionPlot<'a> {
     fn headings(&self, canvas: &mut Canvas) {
         let (frame, cut, plane) = (&self.frame, &self.section.cut, &self.scene.domain.plane);
         let [x, y] = [frame.left - 95.0, frame.top + frame.height / 2.0];
-        let name = if self.scene.membranes() == 1 {
-            "u₁".to_owned()
-        } else {
-            format!("u₁ … u{}", subscript(self.scene.membranes()))
+        let name = match self.scene.membranes() {
+            1 => "u₁".to_owned(),
+            2 => "u₁, u₂".to_owned(),
+            n => format!("u₁ … u{}", subscript(n)),
         };
         canvas.text(&name, [x, y], NORMAL, INK, Anchor::Right);
         canvas.text(&self.height.power(), [x, y + 1.2 * NORMAL], SMALL, INK, Anchor::Right);
@@ -152,22 +152,21 @@ impl<'a> SectionPlot<'a> {
         let title = format!("Section A–A: {other} = {place}, heights {}", times(heights));
         let over = frame.top - 34.0;
         canvas.text(&title, [frame.left, over], NORMAL, INK, Anchor::Left);
-        if self.scene.gaps.iter().any(|gap| gap.action.touching) {
-            self.legend(canvas, over);
+        if let Some(gap) = self.scene.gaps.iter().find(|gap| gap.action.touching) {
+            self.legend(canvas, gap, over);
         }
     }
 
-    /// What contact looks like.
-    fn legend(&self, canvas: &mut Canvas, y: f64) {
+    /// What contact in a gap looks like.
+    fn legend(&self, canvas: &mut Canvas, gap: &Gap, y: f64) {
         const SAMPLE: f64 = 60.0;
-        let text = "contact: side by side, dark seam";
+        let text = "contact: lines joined by a dark seam";
         let left = self.frame.right() - canvas.width(text, SMALL) - SAMPLE - 12.0;
-        let line = |canvas: &mut Canvas, y: f64, part: f64, color: Rgb| {
-            canvas.line([[left, y], [left + SAMPLE, y]], part * APART, color);
-        };
-        line(canvas, y, SEAM, CONTACT);
-        line(canvas, y - APART / 2.0, CURVE, LAYERS[0]);
-        line(canvas, y + APART / 2.0, CURVE, LAYERS[1]);
+        let [upper, lower] = [0, 1].map(|k| self.scene.layers[gap.upper + k].color);
+        let half = APART / 2.0;
+        for (shift, part, color) in [(0.0, SEAM, CONTACT), (-half, CURVE, upper), (half, CURVE, lower)] {
+            canvas.line([[left, y + shift], [left + SAMPLE, y + shift]], part * APART, color);
+        }
         canvas.text(text, [left + SAMPLE + 12.0, y], SMALL, INK, Anchor::Left);
     }
 

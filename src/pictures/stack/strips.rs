@@ -7,8 +7,9 @@ use crate::pictures::drawing::color::{CONTACT_BAND, INK};
 use crate::pictures::drawing::frame::{Frame, NORMAL, SMALL};
 use crate::pictures::plan::Bars;
 
-/// About how many ticks lambda has.
-const TICKS: usize = 2;
+/// About how many ticks lambda has, and up to which place: a higher one has its label beside that of zero of the plot above.
+const TICKS: usize = 3;
+const HIGHEST_TICK: f64 = 0.85;
 
 /// Draws the plots into their frames, with the axis along the cut below the last one.
 pub(super) fn draw(canvas: &mut Canvas, scene: &Scene, section: &Section, frames: &[Frame]) {
@@ -35,10 +36,12 @@ fn strip(canvas: &mut Canvas, scene: &Scene, section: &Section, gap: &Gap, frame
         canvas.fill([frame.at([start, 1.0]), frame.at([end, 0.0])], CONTACT_BAND);
     }
     let bars = Bars::new(frame, &gap.action);
-    bars.draw(canvas, &section.forces(gap), TICKS);
+    let mut ticks = bars.axis.ticks(TICKS);
+    ticks.retain(|tick| tick.place <= HIGHEST_TICK);
+    bars.draw(canvas, &section.forces(gap), &ticks);
     frame.outline(canvas);
     if gap.action.pressed {
-        frame.left_axis(canvas, &bars.axis, TICKS);
+        frame.left_ticks(canvas, &ticks);
     }
     if contacts.is_empty() {
         say(canvas, &frame, "no contact along A–A");
