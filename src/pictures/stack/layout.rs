@@ -6,7 +6,7 @@ use crate::pictures::drawing::frame::Frame;
 use crate::pictures::plan::MOST_ELONGATED;
 
 /// The section; names of the layers stand right of it.
-const SECTION: Frame = Frame { left: 240.0, top: 170.0, width: 1330.0, height: 420.0 };
+const SECTION: Frame = Frame { left: 240.0, top: 170.0, width: 1330.0, height: 480.0 };
 /// The height of a plot of lambda, and the room between two.
 const STRIP: [f64; 2] = [88.0, 12.0];
 /// Room for ticks and the name of the axis under the last plot.
@@ -26,6 +26,8 @@ const HIGHEST_MAP: f64 = 380.0;
 const ROW: f64 = 150.0;
 /// The height of a column of maps with all that is around them at most.
 const HIGHEST_COLUMN: f64 = 1100.0;
+/// Maps may be narrower by this factor for fewer rows.
+const FEWER_ROWS: f64 = 0.8;
 /// Room for the line of text over all maps, and between the columns and the edge.
 const OVER_MAPS: f64 = 50.0;
 const EDGE: f64 = 10.0;
@@ -86,7 +88,11 @@ fn grid(count: usize, aspect: f64) -> (usize, [f64; 2]) {
         let height = if height < ROW { 0.0 } else { height.min(HIGHEST_MAP) };
         (room / columns as f64 - BESIDE_MAP).min(height * aspect)
     };
-    let wider = |best: usize, columns: usize| if width(columns) > width(best) { columns } else { best };
-    let columns = (1..=most).fold(1, wider);
+    let better = |best: usize, columns: usize| {
+        let fewer_rows = count.div_ceil(columns) < count.div_ceil(best);
+        let least = if fewer_rows { FEWER_ROWS * width(best) } else { width(best) };
+        if width(columns) > least { columns } else { best }
+    };
+    let columns = (1..=most).fold(1, better);
     (columns, [width(columns), width(columns) / aspect])
 }

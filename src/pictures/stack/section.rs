@@ -1,6 +1,6 @@
 //! Where the stack is cut, and its layers along the cut.
 
-use super::scene::{Gap, Scene};
+use super::scene::{Gap, Layer, Scene};
 use crate::pictures::drawing::raster;
 use crate::pictures::plan::{Cells, Cut, middle, stretches};
 
@@ -64,8 +64,7 @@ impl Section {
     pub(super) fn new(scene: &Scene, cut: Cut, steps: usize) -> Section {
         let mut samples: Vec<Option<Sample>> = (0..steps).map(|_| None).collect();
         cut.walk(&scene.domain, steps, |step, corners, weights| {
-            let height =
-                |layer: &super::scene::Layer| (0..3).map(|k| weights[k] * layer.height(corners[k])).sum();
+            let height = |layer: &Layer| (0..3).map(|k| weights[k] * layer.height(corners[k])).sum();
             samples[step] = Some(Sample {
                 heights: scene.layers.iter().map(height).collect(),
                 vertex: corners[raster::nearest_corner(weights)],

@@ -10,7 +10,7 @@ use crate::pictures::drawing::color::{CONTACT, INK};
 use crate::pictures::drawing::frame::{Frame, NORMAL, SMALL};
 
 /// Layers are drawn at least this far from each other, in pixels,
-const APART: f64 = 6.0;
+const APART: f64 = 5.0;
 /// with curves that take this part of it,
 const CURVE: f64 = 0.66;
 /// and a seam between those that touch, which reaches under both curves.
@@ -160,7 +160,7 @@ impl<'a> SectionPlot<'a> {
     /// What contact in a gap looks like.
     fn legend(&self, canvas: &mut Canvas, gap: &Gap, y: f64) {
         const SAMPLE: f64 = 60.0;
-        let text = "contact: lines joined by a dark seam";
+        let text = "contact: a dark seam; lines that are close are drawn side by side";
         let left = self.frame.right() - canvas.width(text, SMALL) - SAMPLE - 12.0;
         let [upper, lower] = [0, 1].map(|k| self.scene.layers[gap.upper + k].color);
         let half = APART / 2.0;

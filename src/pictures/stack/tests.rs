@@ -173,7 +173,7 @@ fn every_layer_is_in_the_section_and_no_other() {
             let (image, section) = (stack.image(), stack.layout().section);
             for (membrane, &color) in LAYERS.iter().enumerate() {
                 let pixels = count_in(&image, &section, color);
-                assert_eq!(pixels > 2000, membrane < count, "{count} {obstacles:?} u{membrane}: {pixels}");
+                assert_eq!(pixels > 1500, membrane < count, "{count} {obstacles:?} u{membrane}: {pixels}");
             }
             let half = section.height / 2.0;
             let halves = [
@@ -195,7 +195,7 @@ fn contact_and_only_contact_is_painted_as_contact() {
     for strip in &layout.strips {
         assert!(count_in(&image, strip, CONTACT_BAND) > 5_000);
     }
-    assert!(count_in(&image, &layout.section, CONTACT) > 500);
+    assert!(count_in(&image, &layout.section, CONTACT) > 300);
     let painted = |map: usize| count_in(&image, &layout.maps[map], force(1.0)) > 10_000;
     assert_eq!([0, 1, 2].map(painted), [true, false, true]);
     assert!(count_in(&image, &layout.maps[1], FREE) > 10_000);
@@ -209,7 +209,7 @@ fn contact_and_only_contact_is_painted_as_contact() {
 fn layers_that_only_come_close_have_no_seam() {
     let mut stack = Stack::new(32, 1.0, [false, false], &[&disk]);
     let section = stack.layout().section;
-    assert!(count_in(&stack.image(), &section, CONTACT) > 500);
+    assert!(count_in(&stack.image(), &section, CONTACT) > 300);
     stack.gaps[0].contact.fill(false);
     assert_eq!(count_in(&stack.image(), &section, CONTACT), 0);
 }
@@ -267,6 +267,28 @@ fn of_more_gaps_than_fit_those_with_the_greatest_force_are_shown() {
     assert_eq!(stack.layout().strips.len(), 7);
     stack.gaps.truncate(7);
     assert_eq!(stack.scene().shown, [0, 1, 2, 3, 4, 5, 6]);
+}
+
+#[test]
+fn maps_lie_beside_each_other_on_the_picture() {
+    for count in 1..=7 {
+        for width in [0.01, 0.5, 1.0, 2.0, 100.0] {
+            let gaps: [&dyn Fn(f64, f64) -> f64; 7] = [&open; 7];
+            let layout = Stack::new(4, width, [false, false], &gaps[..count]).layout();
+            let room = |map: &Frame| {
+                let Frame { left, top, width, height } = map;
+                [left - 20.0, top - 100.0, left + width + 150.0, top + height + 80.0]
+            };
+            let rooms: Vec<[f64; 4]> = layout.maps.iter().map(room).collect();
+            for (k, [left, top, right, bottom]) in rooms.iter().enumerate() {
+                assert!(*left > 60.0 && *right < layout.size[0] as f64 && *bottom <= layout.size[1] as f64);
+                assert!(*top > layout.maps_top);
+                let apart = |other: &[f64; 4]| right < &other[0] || bottom < &other[1];
+                assert!(rooms[k + 1..].iter().all(apart), "{count} maps, width {width}: {rooms:?}");
+            }
+            assert!(layout.size[1] < 2700, "{count} maps, width {width}: {:?}", layout.size);
+        }
+    }
 }
 
 #[test]
