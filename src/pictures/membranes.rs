@@ -12,15 +12,17 @@ mod section_plot;
 mod surfaces;
 mod view;
 
-pub use picture::{Picture, PictureError, SIZE};
+pub use super::plan::PictureError;
+pub use picture::{Picture, SIZE};
 
 use super::drawing::canvas::{Canvas, FINE};
 use super::drawing::encode::Drawing;
 use super::drawing::frame::Frame;
 use super::drawing::heading::heading;
+use super::plan::Cut;
 use map::Map;
 use scene::Scene;
-use section::{Cut, Section};
+use section::{Section, cut_through};
 use section_plot::SectionPlot;
 
 /// Where the parts of the picture lie.
@@ -48,7 +50,8 @@ pub fn render(picture: &Picture) -> Result<Drawing, PictureError> {
 
 /// The line A-A.
 fn cut(scene: &Scene, map: &Map) -> Cut {
-    Cut::through(scene, |axis| map.profile(axis, |vertex| !scene.touching || scene.in_contact(vertex)))
+    let action = &scene.action;
+    cut_through(scene, |axis| map.profile(axis, |vertex| !action.touching || action.in_contact(vertex)))
 }
 
 #[cfg(test)]

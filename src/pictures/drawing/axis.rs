@@ -171,6 +171,12 @@ pub(crate) fn times(factor: f64) -> String {
     format!("×{short}")
 }
 
+/// A number in lowered digits.
+pub(crate) fn subscript(number: usize) -> String {
+    let lower = |c: char| char::from_u32('₀' as u32 + c as u32 - '0' as u32).unwrap_or(c);
+    number.to_string().chars().map(lower).collect()
+}
+
 /// An integer in raised digits.
 pub(crate) fn superscript(exponent: i32) -> String {
     let raise = |c: char| match c {

@@ -36,6 +36,13 @@ pub(crate) const DUAL_CONTACT: Rgb = [250, 206, 130];
 /// The rim of the contact over the colours of [`force`]: none of them, and of middle brightness.
 pub(crate) const RIM: Rgb = [213, 94, 0];
 
+/// The membranes of a stack from the top (M. Okabe, K. Ito, 2008): neighbours are dark and light by turns in grey; blue, orange,
+/// green, sky blue, red, purple.
+pub(crate) const LAYERS: [Rgb; 6] =
+    [[0, 114, 178], [230, 159, 0], [0, 158, 115], [86, 180, 233], [213, 94, 0], [204, 121, 167]];
+/// An obstacle: its body, the hatching on it, and its surface.
+pub(crate) const WALL: [Rgb; 3] = [[226, 226, 226], [170, 170, 170], [110, 110, 110]];
+
 /// Curves (M. Okabe, K. Ito, 2008), those first that differ most in grey: dark blue, orange, black, sky blue, red, purple,
 /// green.
 pub(crate) const CURVES: [Rgb; 7] = [

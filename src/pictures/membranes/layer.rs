@@ -64,14 +64,14 @@ impl Layer {
     /// Paints a membrane, shaded, with grid lines and the contact region.
     pub(super) fn surface(&mut self, scene: &Scene, view: &View, style: &Style) {
         let shades = brightness(scene, view, style.membrane);
-        let in_box = |v: usize| view.in_box(scene.place(v), scene.levels(v)[style.membrane]);
+        let in_box = |v: usize| view.in_box(scene.domain.place(v), scene.levels(v)[style.membrane]);
         let project = |v: usize| {
             let [x, y, nearness] = view.project(in_box(v));
             (raster::on_grid(self.fine([x, y])), nearness)
         };
-        let projected: Vec<([f64; 2], f64)> = (0..scene.vertex_count()).map(project).collect();
+        let projected: Vec<([f64; 2], f64)> = (0..scene.domain.vertex_count()).map(project).collect();
         let spacing = [0, 1].map(|k| 1.0 / (GRID * view.sides()[k]).round().max(2.0));
-        for corners in scene.triangles() {
+        for corners in scene.domain.triangles() {
             let flat = corners.map(|v| projected[v].0);
             let Some(gradients) = barycentric_gradients(flat) else { continue };
             let places = corners.map(in_box);
@@ -81,7 +81,7 @@ impl Layer {
             let gaps = corners.map(|v| scene.levels(v)[0] - scene.levels(v)[1]);
             let nearnesses = corners.map(|v| projected[v].1);
             let shades = corners.map(|v| f64::from(shades[v]));
-            let contacts = corners.map(|v| scene.in_contact(v));
+            let contacts = corners.map(|v| scene.action.in_contact(v));
             let across = [0, 1].map(|k| places.map(|place| place[k]));
             let steepness = [0, 1].map(|k| {
                 let slope = |axis: usize| (0..3).map(|i| gradients[i][axis] * places[i][k]).sum::<f64>();
@@ -213,9 +213,9 @@ fn grid_line(at: f64, spacing: f64, steepness: f64) -> f64 {
 
 /// The brightness of a membrane at each vertex, from the mean slope of the triangles around it.
 fn brightness(scene: &Scene, view: &View, membrane: usize) -> Vec<f32> {
-    let mut sums = vec![[0.0; 3]; scene.vertex_count()];
-    for corners in scene.triangles() {
-        let places = corners.map(|v| view.in_box(scene.place(v), scene.levels(v)[membrane]));
+    let mut sums = vec![[0.0; 3]; scene.domain.vertex_count()];
+    for corners in scene.domain.triangles() {
+        let places = corners.map(|v| view.in_box(scene.domain.place(v), scene.levels(v)[membrane]));
         let Some(gradients) = barycentric_gradients(places.map(|[s, t, _]| [s, t])) else { continue };
         let slope = [0, 1].map(|axis| (0..3).map(|i| gradients[i][axis] * places[i][2]).sum::<f64>());
         let [a, b, c] = places;

@@ -4,15 +4,12 @@ use super::scene::Scene;
 use super::section::{Sample, Section};
 use crate::pictures::drawing::axis::{Axis, times};
 use crate::pictures::drawing::canvas::{Anchor, Canvas, FINE};
-use crate::pictures::drawing::color::{CONTACT, CONTACT_BAND, INK, LOWER_LINE, Rgb, UPPER_LINE, force};
+use crate::pictures::drawing::color::{CONTACT, CONTACT_BAND, INK, LOWER_LINE, Rgb, UPPER_LINE};
 use crate::pictures::drawing::frame::{Frame, NORMAL, SMALL};
+use crate::pictures::plan::Bars;
 
 /// Width of the curves in pixels.
 const CURVE: f64 = 4.0;
-/// Bars are wider by this part of a pixel.
-const OVERLAP: f64 = 0.2;
-/// Room for the greatest lambda above the bars, as part of their range.
-const OVER_BARS: f64 = 0.42;
 /// Room for labels above and below the curves, as part of their range.
 const HEADROOM: f64 = 0.28;
 
@@ -21,9 +18,8 @@ pub(super) struct SectionPlot<'a> {
     scene: &'a Scene<'a>,
     section: &'a Section,
     membranes: Frame,
-    force: Frame,
     height: Axis,
-    lambda: Axis,
+    bars: Bars<'a>,
 }
 
 impl<'a> SectionPlot<'a> {
@@ -31,19 +27,18 @@ impl<'a> SectionPlot<'a> {
     pub(super) fn new(scene: &'a Scene<'a>, section: &'a Section, [membranes, force]: [Frame; 2]) -> Self {
         let heights = section.samples.iter().flatten().flat_map(|sample| sample.heights);
         let height = Axis::over(heights, false).widened([HEADROOM, HEADROOM]);
-        let lambda = scene.force.widened([0.0, OVER_BARS]);
-        SectionPlot { scene, section, membranes, force, height, lambda }
+        SectionPlot { scene, section, membranes, height, bars: Bars::new(force, &scene.action) }
     }
 
     /// Draws the plot.
     pub(super) fn draw(&self, canvas: &mut Canvas) {
         for [start, end] in self.section.contacts() {
-            for frame in [self.membranes, self.force] {
+            for frame in [self.membranes, self.bars.frame] {
                 canvas.fill([frame.at([start, 1.0]), frame.at([end, 0.0])], CONTACT_BAND);
             }
         }
         self.membranes.rules(canvas, &self.height, 4);
-        self.forces(canvas);
+        self.bars.draw(canvas, &self.section.forces(), &self.bars.axis.ticks(3));
         self.curve(canvas, 1, LOWER_LINE);
         self.curve(canvas, 0, UPPER_LINE);
         self.contact_curve(canvas);
@@ -75,37 +70,6 @@ impl<'a> SectionPlot<'a> {
                 canvas.dot([upper[0], (upper[1] + lower[1]) / 2.0], 0.9 * CURVE, CONTACT);
             }
         }
-    }
-
-    /// Lambda as an area in the colours of the map.
-    fn forces(&self, canvas: &mut Canvas) {
-        if self.scene.pressed {
-            self.force.rules(canvas, &self.lambda, 3);
-        }
-        let zero = self.lambda.place(0.0);
-        let forces = self.section.forces();
-        // Neighbours overlap a little: no paper shines through between them.
-        let overlap = OVERLAP / self.force.width;
-        for &([start, end], lambda) in &forces {
-            let level = self.lambda.place(lambda);
-            let corners =
-                [self.force.at([start, level.max(zero)]), self.force.at([end + overlap, level.min(zero)])];
-            canvas.fill(corners, force(self.scene.force.place(lambda)));
-        }
-        let greatest = forces.iter().max_by(|a, b| a.1.total_cmp(&b.1));
-        if let Some(&([start, end], lambda)) = greatest.filter(|_| self.scene.pressed) {
-            self.greatest(canvas, (start + end) / 2.0, lambda);
-        }
-    }
-
-    /// The greatest lambda of the section, over its place.
-    fn greatest(&self, canvas: &mut Canvas, along: f64, lambda: f64) {
-        let axis = &self.scene.force;
-        let text = format!("max {}", axis.tick_at(lambda).label);
-        let [x, y] = self.force.at([along, self.lambda.place(lambda)]);
-        let half = canvas.width(&text, SMALL) / 2.0 + 6.0;
-        let x = x.clamp(self.force.left + half, self.force.right() - half);
-        canvas.text(&text, [x, y - 0.6 * SMALL], SMALL, INK, Anchor::Middle);
     }
 
     fn membrane_names(&self, canvas: &mut Canvas) {
@@ -160,30 +124,31 @@ impl<'a> SectionPlot<'a> {
     }
 
     fn axes(&self, canvas: &mut Canvas) {
-        let (above, below, cut) = (&self.membranes, &self.force, &self.section.cut);
+        let (above, below, cut) = (&self.membranes, &self.bars.frame, &self.section.cut);
         above.outline(canvas);
         below.outline(canvas);
         above.left_axis(canvas, &self.height, 4);
-        for (frame, name, axis) in [(above, "u₁, u₂", &self.height), (below, "λ", &self.lambda)] {
+        for (frame, name, axis) in [(above, "u₁, u₂", &self.height), (below, "λ", &self.bars.axis)] {
             let [x, y] = [frame.left - 95.0, frame.top + frame.height / 2.0];
             canvas.text(name, [x, y], NORMAL, INK, Anchor::Right);
             canvas.text(&axis.power(), [x, y + 1.2 * NORMAL], SMALL, INK, Anchor::Right);
         }
-        if self.scene.pressed {
-            below.left_axis(canvas, &self.lambda, 3);
+        if self.scene.action.pressed {
+            below.left_axis(canvas, &self.bars.axis, 3);
         } else {
             let at = [below.left + below.width / 2.0, below.top + below.height / 2.0];
-            let reason = if self.scene.touching { "λ = 0" } else { "no contact" };
+            let reason = if self.scene.action.touching { "λ = 0" } else { "no contact" };
             canvas.text(reason, at, NORMAL, INK, Anchor::Middle);
         }
         let [name, other] = if cut.along == 0 { ["x", "y"] } else { ["y", "x"] };
-        let along = &self.scene.plane[cut.along];
+        let along = &self.scene.domain.plane[cut.along];
         below.bottom_axis(canvas, along);
         let under = [below.left + below.width / 2.0, below.bottom() + 58.0];
         canvas.text(&format!("{name}{}", along.suffix()), under, NORMAL, INK, Anchor::Middle);
-        let place = self.scene.plane[1 - cut.along].round(cut.place, cut.reach).label;
+        let place = self.scene.domain.plane[1 - cut.along].round(cut.place, cut.reach).label;
         let scale = |pixels: f64, axis: &Axis| pixels / axis.length();
-        let heights = scale(above.height, &self.height) / scale(above.width, &self.scene.plane[cut.along]);
+        let heights =
+            scale(above.height, &self.height) / scale(above.width, &self.scene.domain.plane[cut.along]);
         let title = format!("Section A–A: {other} = {place}, heights {}", times(heights));
         canvas.text(&title, [above.left, above.top - 52.0], NORMAL, INK, Anchor::Left);
     }

@@ -2,7 +2,7 @@
 
 use super::layer::{Kind, Layer, Style};
 use super::scene::{Scene, TOUCHING};
-use super::section::{Cut, Sample, Section};
+use super::section::{Sample, Section};
 use super::view::View;
 use crate::pictures::drawing::axis::Tick;
 use crate::pictures::drawing::canvas::{Anchor, Canvas};
@@ -10,6 +10,7 @@ use crate::pictures::drawing::color::{
     CONTACT, CONTACT_BAND, INK, LOWER, LOWER_LINE, PAPER, RULE, UPPER, UPPER_LINE, mix,
 };
 use crate::pictures::drawing::frame::{Frame, NORMAL, SMALL, fitting_ticks};
+use crate::pictures::plan::Cut;
 
 /// Beyond this place of the left edge of the floor its labels would run into those of the heights.
 const FAR_END: f64 = 0.93;
@@ -55,8 +56,8 @@ fn membrane(scene: &Scene, section: &Section, view: &View, style: &Style, frame:
 /// The boundary of a membrane, thin and pale where it is cut away.
 fn rim(layer: &mut Layer, scene: &Scene, view: &View, style: &Style) {
     let pale = mix(style.line, PAPER, 0.4);
-    for edge in &scene.boundary {
-        let ends = edge.map(|v| view.in_box(scene.place(v), scene.levels(v)[style.membrane]));
+    for edge in &scene.domain.boundary {
+        let ends = edge.map(|v| view.in_box(scene.domain.place(v), scene.levels(v)[style.membrane]));
         let cut_away = ends[0][1].min(ends[1][1]) < style.from;
         let (width, color) = if cut_away { (1.0, pale) } else { (2.5, style.line) };
         layer.line(view, ends, width, color);
@@ -82,8 +83,8 @@ fn profile(layer: &mut Layer, scene: &Scene, section: &Section, view: &View, sty
 /// The ticks of the front edge of the floor and of its left edge, as places in the box.
 fn floor_ticks(canvas: &Canvas, scene: &Scene, cut: &Cut, view: &View) -> [Vec<Tick>; 2] {
     let [[left, _], [right, _]] = [0.0, 1.0].map(|s| view.on_canvas([s, 0.0, 0.0]));
-    let front = fitting_ticks(canvas, &scene.plane[cut.along], 0.8 * (right - left));
-    let side = scene.plane[1 - cut.along].ticks(4);
+    let front = fitting_ticks(canvas, &scene.domain.plane[cut.along], 0.8 * (right - left));
+    let side = scene.domain.plane[1 - cut.along].ticks(4);
     let in_box = |tick: Tick| Tick { place: view.in_box(cut.parallel(tick.place), 0.0)[1], ..tick };
     [front, side.into_iter().map(in_box).collect()]
 }
@@ -126,7 +127,7 @@ fn axes(canvas: &mut Canvas, scene: &Scene, cut: &Cut, view: &View) {
         }
     }
     let names = ["x", "y"];
-    let name = |axis: usize| format!("{}{}", names[axis], scene.plane[axis].suffix());
+    let name = |axis: usize| format!("{}{}", names[axis], scene.domain.plane[axis].suffix());
     let [x, y] = view.on_canvas([0.5, 0.0, 0.0]);
     canvas.text(&name(cut.along), [x + 36.0, y + 62.0], NORMAL, INK, Anchor::Middle);
     let [x, y] = view.on_canvas([0.0, 0.5, 0.0]);

@@ -154,7 +154,7 @@ fn a_contact_region_smaller_than_a_pixel_is_on_the_map() {
     let scene = Scene::new(&picture).expect("valid data");
     let map = Map::new(&scene, small);
     let shown = |wanted: &dyn Fn(usize) -> bool| map.profile(1, wanted).iter().sum::<usize>();
-    assert_eq!(shown(&|vertex| scene.in_contact(vertex)), 1);
+    assert_eq!(shown(&|vertex| scene.action.in_contact(vertex)), 1);
     assert_eq!(shown(&|vertex| vertex == (cells + 1) * 281 + 68), 0);
 }
 
@@ -192,7 +192,7 @@ fn the_cut_goes_through_the_greatest_force_and_stays_in_its_dual_cell() {
 
 #[test]
 fn the_share_of_the_contact_is_that_of_its_dual_cells() {
-    let share = |solution: &Solution| Scene::new(&solution.picture("")).expect("valid data").contact_share;
+    let share = |solution: &Solution| Scene::new(&solution.picture("")).expect("valid data").action.share;
     let disk = std::f64::consts::PI * 0.3 * 0.3;
     assert!((share(&Solution::disk()) - disk).abs() < 0.02);
     assert!((share(&Solution::new(8, 1.0, |_, _| true, |_, _| 0.0)) - 1.0).abs() < ROUNDING);

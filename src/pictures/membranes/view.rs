@@ -1,9 +1,9 @@
 //! The oblique view: a parallel projection of the box that holds both membranes.
 
 use super::scene::Scene;
-use super::section::Cut;
 use crate::pictures::drawing::axis::{Axis, times};
 use crate::pictures::drawing::frame::Frame;
+use crate::pictures::plan::Cut;
 
 /// The direction of the cut is turned by this angle (radians) out of the plane of the paper.
 const TURN: f64 = 0.38;
@@ -26,7 +26,7 @@ pub(super) struct View {
 impl View {
     /// The view of the box that fills `room`.
     pub(super) fn new(scene: &Scene, cut: &Cut, room: Frame) -> View {
-        let aspect = scene.aspect(MOST_ELONGATED);
+        let aspect = scene.domain.aspect(MOST_ELONGATED);
         let depth = if cut.along == 0 { 1.0 / aspect } else { aspect };
         let mut view = View { along: cut.along, sides: [1.0, depth, HEIGHT], scale: 1.0, origin: [0.0; 2] };
         let corners: Vec<[f64; 3]> =
@@ -80,9 +80,9 @@ impl View {
     /// By how much the heights are enlarged compared with the direction of the cut, and the other direction, where it is.
     pub(super) fn enlargement(&self, scene: &Scene) -> String {
         let scale = |side: f64, axis: &Axis| side / axis.length();
-        let along = scale(self.sides[0], &scene.plane[self.along]);
+        let along = scale(self.sides[0], &scene.domain.plane[self.along]);
         let heights = times(scale(self.sides[2], &scene.height) / along);
-        let across = times(scale(self.sides[1], &scene.plane[1 - self.along]) / along);
+        let across = times(scale(self.sides[1], &scene.domain.plane[1 - self.along]) / along);
         let name = ["y", "x"][self.along];
         if across == times(1.0) {
             format!("heights {heights}")
