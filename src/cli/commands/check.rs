@@ -83,9 +83,10 @@ pub(crate) fn run(arguments: &CheckArguments, watch: &Watch) -> Result<(), Failu
     if let Some(tolerance) = arguments.tolerance {
         setup.case.solver.tolerance = Tolerance::Fixed(tolerance);
     }
-    let is_pair = setup.case.problem.as_pair().is_some();
+    let problem = &setup.case.problem;
+    let is_pair = problem.as_pair().is_some();
     if arguments.answer.is_none() {
-        for name in solvers(is_pair) {
+        for name in solvers(problem) {
             setup.check_memory(name)?;
         }
     }
@@ -110,7 +111,7 @@ fn check_pair(
                 let candidate = solver(settings.name).solve(&d, &options(settings))?;
                 Ok(certify(&d, candidate, tolerance))
             };
-            (columns_of_solvers(setup, true, &solved, &progress)?, "")
+            (columns_of_solvers(setup, &solved, &progress)?, "")
         }
         Some(file) => {
             progress.stage("judging the answer");
@@ -138,10 +139,10 @@ fn check_stack(
         None => {
             let tolerance = setup.case.solver.tolerance.or_default();
             let solved = |settings: &SolverSettings| {
-                let mut solver = stack_solver(settings.name).expect("one of those for stacks");
+                let mut solver = stack_solver(settings.name, &setup.case.problem)?;
                 Ok(certify_stack(&d, solver.solve_stack(&d, &options(settings))?, tolerance))
             };
-            (columns_of_solvers(setup, false, &solved, &progress)?, "")
+            (columns_of_solvers(setup, &solved, &progress)?, "")
         }
         Some(file) => {
             progress.stage("judging the answer");
@@ -183,12 +184,12 @@ fn report<S: Shown>(
     }
 }
 
-/// All of this build for a pair, or for any stack; the choice among them is one of them.
-fn solvers(is_pair: bool) -> impl Iterator<Item = SolverName> {
+/// All of this build that solve the problem; the choice among them is one of them.
+fn solvers(problem: &ContactProblem) -> impl Iterator<Item = SolverName> {
     SolverName::ALL
         .into_iter()
         .filter(|solver| solver.is_built() && *solver != SolverName::Auto)
-        .filter(move |solver| is_pair || stack_solver(*solver).is_some())
+        .filter(|solver| problem.as_pair().is_some() || stack_solver(*solver, problem).is_ok())
 }
 
 /// What a solver with these settings finds.
@@ -196,12 +197,11 @@ type Solved<'s, S> = dyn Fn(&SolverSettings) -> Result<Result<S, Box<Rejected>>,
 
 fn columns_of_solvers<S>(
     setup: &Setup,
-    is_pair: bool,
     solved: &Solved<S>,
     progress: &Progress,
 ) -> Result<Vec<Column<S>>, Failure> {
     let mut columns = Vec::new();
-    for name in solvers(is_pair) {
+    for name in solvers(&setup.case.problem) {
         let ways = if name.is_polished() { [true, false].as_slice() } else { &[true] };
         for &polish in ways {
             let settings = SolverSettings { name, polish, ..setup.case.solver.clone() };

@@ -33,14 +33,8 @@ pub(super) fn run(
     progress: Progress,
 ) -> Result<(), Failure> {
     let settings = &setup.case.solver;
-    let Some(solver) = stack_solver(settings.name) else {
-        let remedy = "choose auto, active-set, or a QP solver";
-        return Err(Failure::Input(format!(
-            "{}: {} is for a pair so far: {remedy}",
-            setup.name,
-            settings.name.as_str()
-        )));
-    };
+    let solver = stack_solver(settings.name, &setup.case.problem)
+        .map_err(|error| Failure::Input(format!("{}: {error}", setup.name)))?;
     if arguments.dual {
         return Err(Failure::Input(format!("{}: --dual is for a pair so far: leave it out", setup.name)));
     }
