@@ -270,6 +270,18 @@ impl StackDiscretization {
         upper.zip(lower).map_or(f64::NAN, |(upper, lower)| upper - lower)
     }
 
+    /// `K_i` on all vertices, with the foundation.
+    pub(crate) fn matrix(&self, i: usize) -> CsMat<f64> {
+        let MembraneData { factor, profile, foundation, .. } = &self.membranes[i - 1];
+        let mut matrix = self.stiffness[*profile].map(|k| factor * k);
+        for (a, c) in foundation.iter().flatten().enumerate() {
+            if let Some(diagonal) = matrix.get_mut(a, a) {
+                *diagonal += c;
+            }
+        }
+        matrix
+    }
+
     /// The columns and entries of row `a` of `K_i`, without the foundation.
     pub(crate) fn stiffness_row(&self, i: usize, a: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         let MembraneData { factor, profile, .. } = &self.membranes[i - 1];

@@ -4,7 +4,7 @@ use super::MeasureError;
 use crate::discretization::Discretization;
 use crate::fem::stiffness;
 use crate::mesh::{Mesh, Refinement, SubTriangulation};
-use crate::multigrid::hierarchy::{Genealogy, Hierarchy, Mean};
+use crate::multigrid::hierarchy::{Genealogy, Hierarchy, Mean, inside};
 use crate::multigrid::linear::{MAX_ITERATIONS, NoNorm, dual_norm};
 
 /// The spaces of a discretization, as the levels of a hierarchy.
@@ -33,7 +33,7 @@ impl Spaces {
         }
         genealogy.refines(d.mesh().points().len(), &means_of_sub_triangulation(d.mesh(), sub));
         genealogy.follow(d.mesh().ancestry());
-        let hierarchy = Hierarchy::over(&stiffness(&finest), finest.kind(), &genealogy);
+        let hierarchy = Hierarchy::over(&stiffness(&finest), &inside(&finest), &genealogy);
         Ok((Self { hierarchy }, finest))
     }
 

@@ -24,7 +24,7 @@ pub(crate) use transfer::Transfer;
 use sprs::CsMat;
 
 use crate::discretization::Discretization;
-use crate::mesh::VertexKind;
+use crate::mesh::{Mesh, VertexKind};
 use crate::parallel::BLOCK;
 use crate::parallel::prelude::*;
 use coarsening::coarsened;
@@ -58,8 +58,8 @@ pub(crate) struct Hierarchy {
     refinements: usize,
 }
 
-/// One space. Rows belong to the vertices, in the numbering of the level; those of held vertices (on the boundary, or in no
-/// triangle) are empty.
+/// One space. Rows belong to the vertices, in the numbering of the level; those of held vertices (where a membrane is fixed, or in
+/// no triangle) are empty.
 #[derive(Clone)]
 pub(crate) struct Level {
     pub(crate) pattern: Pattern,
@@ -70,27 +70,32 @@ pub(crate) struct Level {
     pub(crate) transfer: Transfer,
 }
 
+/// Which vertices are inside: those with an unknown when membranes are fixed all around.
+pub(crate) fn inside(mesh: &Mesh) -> Vec<bool> {
+    mesh.kind().iter().map(|&kind| kind == VertexKind::Interior).collect()
+}
+
 impl Hierarchy {
     /// Makes the levels of a discretization.
     pub(crate) fn new(d: &Discretization) -> Self {
-        Self::over(d.stiffness(), d.mesh().kind(), &Genealogy::of(d.mesh()))
+        Self::over(d.stiffness(), &inside(d.mesh()), &Genealogy::of(d.mesh()))
     }
 
     /// Likewise, but all levels are algebraic: on stretched triangles coarser meshes are no good, because they are coarser also
     /// along the long sides, where neighbours are hardly coupled.
     pub(crate) fn algebraic(d: &Discretization) -> Self {
         let vertices = d.mesh().points().len();
-        Self::over(d.stiffness(), d.mesh().kind(), &Genealogy::unknown(vertices))
+        Self::over(d.stiffness(), &inside(d.mesh()), &Genealogy::unknown(vertices))
     }
 
-    /// Makes the levels of a stiffness matrix over the vertices of a mesh, of these kinds and with this genealogy.
-    pub(crate) fn over(k: &CsMat<f64>, kind: &[VertexKind], genealogy: &Genealogy) -> Self {
+    /// Makes the levels of a stiffness matrix over the vertices of a mesh with this genealogy; those with an unknown are `free`.
+    pub(crate) fn over(k: &CsMat<f64>, free: &[bool], genealogy: &Genealogy) -> Self {
         let banded = (!is_banded(k.rows(), bandwidth(k, |a| a))).then(|| banded_order(k, genealogy));
-        let (coloring, vertex) = finest_coloring(k, kind, banded.as_deref());
-        let (pattern, values) = compact_stiffness(k, kind, &vertex);
+        let (coloring, vertex) = finest_coloring(k, free, banded.as_deref());
+        let (pattern, values) = compact_stiffness(k, free, &vertex);
         let mut finest_first = vec![Level::new(pattern, values, coloring, 0.0)];
         let banded = banded.unwrap_or_else(|| (0..k.rows() as u32).collect());
-        let refinements = follow_refinements(&mut finest_first, kind, genealogy, banded, vertex.clone());
+        let refinements = follow_refinements(&mut finest_first, free, genealogy, banded, vertex.clone());
         coarsen(&mut finest_first);
         let coarsest = finest_first.last_mut().expect("there is a finest level");
         coarsest.transfer = Transfer::identity(coarsest.pattern.rows());
@@ -155,17 +160,19 @@ impl Hierarchy {
 /// in the order that the windows follow. Returns how many there are.
 fn follow_refinements(
     finest_first: &mut Vec<Level>,
-    kind: &[VertexKind],
+    free: &[bool],
     genealogy: &Genealogy,
     mut banded: Vec<u32>,
     mut of_row: Vec<u32>,
 ) -> usize {
-    let unknowns = |vertices: &[u32]| {
-        vertices.par_iter().with_min_len(BLOCK).filter(|&&a| kind[a as usize] == VertexKind::Interior).count()
-    };
+    let unknowns =
+        |vertices: &[u32]| vertices.par_iter().with_min_len(BLOCK).filter(|&&a| free[a as usize]).count();
     let mut fine_unknowns = unknowns(&banded);
-    let mut number = vec![0; kind.len()];
+    let mut number = vec![0; free.len()];
     for generation in 1.. {
+        if !fixed_come_from_fixed(free, genealogy, generation, &banded) {
+            return generation - 1;
+        }
         banded.retain(|&a| genealogy.is_on_level(a, generation));
         let coarse_unknowns = unknowns(&banded);
         if coarse_unknowns as f64 > SLOW_REFINEMENT * fine_unknowns as f64 {
@@ -178,6 +185,18 @@ fn follow_refinements(
         of_row = composed(Some(&banded), rows);
     }
     unreachable!("some generation is the last")
+}
+
+/// Whether the parents of all vertices that are fixed, and not on the level of this generation, are fixed as well. A coarse function
+/// that is zero at fixed vertices would not be so on the finer level else: an edge may be fixed in part.
+fn fixed_come_from_fixed(free: &[bool], genealogy: &Genealogy, generation: usize, vertices: &[u32]) -> bool {
+    let is_fixed = |&a: &u32| !free[a as usize];
+    let is_well = |a: &u32| {
+        !is_fixed(a)
+            || genealogy.is_on_level(*a, generation)
+            || genealogy.parents(*a).vertices().iter().all(is_fixed)
+    };
+    vertices.par_iter().with_min_len(BLOCK).all(is_well)
 }
 
 /// From the vertices of a generation, which have these numbers, to those of the one before, in the order of its rows.
@@ -222,7 +241,7 @@ fn bandwidth(k: &CsMat<f64>, place: impl Fn(usize) -> usize + Sync) -> usize {
 }
 
 /// Windows and colours of the finest level, and the vertices of its rows; `order` is the order that the windows follow.
-fn finest_coloring(k: &CsMat<f64>, kind: &[VertexKind], order: Option<&[u32]>) -> (Coloring, Vec<u32>) {
+fn finest_coloring(k: &CsMat<f64>, free: &[bool], order: Option<&[u32]>) -> (Coloring, Vec<u32>) {
     let position = order.map(inverse);
     let vertex = |i: usize| order.map_or(i, |order| order[i] as usize);
     let row = |a: usize| {
@@ -233,9 +252,10 @@ fn finest_coloring(k: &CsMat<f64>, kind: &[VertexKind], order: Option<&[u32]>) -
     let coupled = |i: usize| {
         let a = vertex(i);
         let diagonal = row(a).find(|&(b, _)| b == a).map_or(0.0, |(_, value)| value);
-        let free = kind[a] == VertexKind::Interior;
-        let entries = row(a).filter(move |&(b, value)| free && b != a && value.abs() > UNCOUPLED * diagonal);
-        entries.filter(|&(b, _)| kind[b] == VertexKind::Interior).map(|(b, _)| place(b))
+        let is_free = free[a];
+        let entries =
+            row(a).filter(move |&(b, value)| is_free && b != a && value.abs() > UNCOUPLED * diagonal);
+        entries.filter(|&(b, _)| free[b]).map(|(b, _)| place(b))
     };
     let (coloring, rows) = Coloring::new(k.rows(), bandwidth(k, place), coupled);
     (coloring, composed(order, rows))
@@ -278,7 +298,7 @@ impl Level {
         Self { pattern, values, coloring, runs, transfer: Transfer::default() }
     }
 
-    /// Whether a vertex is on the boundary, or in no triangle.
+    /// Whether a vertex is fixed, or in no triangle.
     #[inline(always)]
     pub(crate) fn is_held(&self, i: usize) -> bool {
         self.values.diagonal[i] == 0.0

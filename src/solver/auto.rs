@@ -17,6 +17,15 @@ const SMALL: usize = 2000;
 /// Without a hierarchy of meshes it is preferred a little longer: algebraic multigrid needs more cycles.
 const SMALL_WITHOUT_HIERARCHY: usize = 5_000;
 
+/// How many unknowns of a membrane are few on a mesh with so many refinements, and these in words.
+pub(super) fn small(refinements: usize) -> (usize, String) {
+    match refinements {
+        0 => (SMALL_WITHOUT_HIERARCHY, "no coarser mesh known".into()),
+        1 => (SMALL, "1 coarser mesh known".into()),
+        _ => (SMALL, format!("{refinements} coarser meshes known")),
+    }
+}
+
 /// The active set method on small meshes, multigrid on others, and the active set method again where that does not converge,
 /// on very stretched triangles; which and why is in [`Statistics::choice`](super::Statistics::choice).
 #[derive(Debug, Clone, Copy, Default)]
@@ -54,11 +63,7 @@ impl PreparedSolver for PreparedAuto<'_> {
         let d = self.d;
         let unknowns = d.interior().len();
         let refinements = d.mesh().ancestry().len();
-        let (small, hierarchy) = match refinements {
-            0 => (SMALL_WITHOUT_HIERARCHY, "no coarser mesh known".to_string()),
-            1 => (SMALL, "1 coarser mesh known".to_string()),
-            _ => (SMALL, format!("{refinements} coarser meshes known")),
-        };
+        let (small, hierarchy) = small(refinements);
         let (mut candidate, size) = if unknowns <= small {
             (ActiveSet.solve(d, options)?, "few")
         } else {

@@ -1,14 +1,15 @@
 //! Solvers of a stack of membranes between obstacles.
 
 mod active_set;
+mod auto;
+mod multigrid;
 mod qp_solver;
 mod reduced;
 #[cfg(test)]
 mod tests;
 
-use super::{Auto, ContactSolver, SolverError, SolverOptions, Statistics};
+use super::{SolverError, SolverOptions, Statistics};
 use crate::discretization::{Displacements, StackDiscretization};
-use crate::text::grouped;
 
 /// Displacements and multipliers of a stack that nobody has checked yet.
 #[derive(Debug, Clone)]
@@ -33,7 +34,8 @@ impl StackCandidate {
     }
 }
 
-/// Anything that solves a stack: the [active set method](super::ActiveSet), or a [`QpBackend`](crate::qp::QpBackend) by way of
+/// Anything that solves a stack: the [active set method](super::ActiveSet), [multigrid](super::Multigrid) for one membrane with at
+/// most one obstacle, the [choice](super::Auto) between them, or a [`QpBackend`](crate::qp::QpBackend) by way of
 /// [`QpSolver`](super::QpSolver). The options' warm start is one of the paper's pair, and not used.
 pub trait StackSolver: Send {
     /// Solves the problem, or stops early and says so in the statistics.
@@ -45,28 +47,4 @@ pub trait StackSolver: Send {
         d: &StackDiscretization,
         options: &SolverOptions,
     ) -> Result<StackCandidate, SolverError>;
-}
-
-impl StackSolver for Auto {
-    fn solve_stack(
-        &mut self,
-        d: &StackDiscretization,
-        options: &SolverOptions,
-    ) -> Result<StackCandidate, SolverError> {
-        let mut candidate = super::ActiveSet.solve_stack(d, options)?;
-        let membranes = match d.membranes() {
-            1 => "one membrane".to_string(),
-            n => format!("{n} coupled membranes"),
-        };
-        let obstacles = match d.has_obstacles() {
-            [false, false] => "",
-            [true, false] => " under a ceiling",
-            [false, true] => " over a floor",
-            [true, true] => " between a ceiling and a floor",
-        };
-        let unknowns = grouped(d.unknowns());
-        candidate.statistics.choice =
-            Some(format!("by {}: {membranes}{obstacles} ({unknowns} unknowns)", self.name()));
-        Ok(candidate)
-    }
 }

@@ -5,7 +5,7 @@ use crate::action::{
     ContactSolution, GapSolution, Rejected, Residuals, StackSolution, certify, certify_stack,
 };
 use crate::cli::args::CheckArguments;
-use crate::cli::case::{SolverName, SolverSettings};
+use crate::cli::case::{CaseFile, SolverName, SolverSettings};
 use crate::cli::failure::Failure;
 use crate::cli::run::progress::Progress;
 use crate::cli::run::setup::{Setup, options, solver, stack_solver, unused_groups};
@@ -85,7 +85,7 @@ pub(crate) fn run(arguments: &CheckArguments, watch: &Watch) -> Result<(), Failu
     }
     let is_pair = setup.case.pair().is_some();
     if arguments.answer.is_none() {
-        for name in solvers(is_pair) {
+        for name in solvers(&setup.case) {
             setup.check_memory(name)?;
         }
     }
@@ -110,7 +110,7 @@ fn check_pair(
                 let candidate = solver(settings.name).solve(&d, &options(settings))?;
                 Ok(certify(&d, candidate, tolerance))
             };
-            (columns_of_solvers(setup, true, &solved, &progress)?, "")
+            (columns_of_solvers(setup, &solved, &progress)?, "")
         }
         Some(file) => {
             progress.stage("judging the answer");
@@ -138,10 +138,10 @@ fn check_stack(
         None => {
             let tolerance = setup.case.solver.tolerance.or_default();
             let solved = |settings: &SolverSettings| {
-                let mut solver = stack_solver(settings.name).expect("one of those for stacks");
+                let mut solver = stack_solver(settings.name, &setup.case.problem)?;
                 Ok(certify_stack(&d, solver.solve_stack(&d, &options(settings))?, tolerance))
             };
-            (columns_of_solvers(setup, false, &solved, &progress)?, "")
+            (columns_of_solvers(setup, &solved, &progress)?, "")
         }
         Some(file) => {
             progress.stage("judging the answer");
@@ -183,12 +183,12 @@ fn report<S: Shown>(
     }
 }
 
-/// All of this build for a pair, or for any stack; the choice among them is one of them.
-fn solvers(is_pair: bool) -> impl Iterator<Item = SolverName> {
+/// All of this build that solve the problem; the choice among them is one of them.
+fn solvers(case: &CaseFile) -> impl Iterator<Item = SolverName> {
     SolverName::ALL
         .into_iter()
         .filter(|solver| solver.is_built() && *solver != SolverName::Auto)
-        .filter(move |solver| is_pair || stack_solver(*solver).is_some())
+        .filter(|solver| case.pair().is_some() || stack_solver(*solver, &case.problem).is_ok())
 }
 
 /// What a solver with these settings finds.
@@ -196,12 +196,11 @@ type Solved<'s, S> = dyn Fn(&SolverSettings) -> Result<Result<S, Box<Rejected>>,
 
 fn columns_of_solvers<S>(
     setup: &Setup,
-    is_pair: bool,
     solved: &Solved<S>,
     progress: &Progress,
 ) -> Result<Vec<Column<S>>, Failure> {
     let mut columns = Vec::new();
-    for name in solvers(is_pair) {
+    for name in solvers(&setup.case) {
         let ways = if name.is_polished() { [true, false].as_slice() } else { &[true] };
         for &polish in ways {
             let settings = SolverSettings { name, polish, ..setup.case.solver.clone() };

@@ -42,7 +42,7 @@ pub(crate) fn run(arguments: &SolveArguments, watch: &Watch) -> Result<(), Failu
     override_settings(&mut setup, arguments, &clock);
     setup.check_memory(setup.case.solver.name)?;
     if setup.case.pair().is_none() {
-        return stack::run(&setup, arguments, (&clock, watch), progress);
+        return stack::run(&setup, arguments, (&clock, watch, &pictures), progress);
     }
     let (d, seconds) = setup.discretize(&progress)?;
     // Nobody may find a folder of which the run says that nothing was written.

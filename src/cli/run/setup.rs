@@ -19,7 +19,7 @@ use crate::output::Seconds;
 use crate::problem::ContactProblem;
 #[cfg(any(feature = "clarabel", feature = "osqp"))]
 use crate::solver::QpSolver;
-use crate::solver::{ActiveSet, Auto, ContactSolver, Multigrid, SolverOptions, StackSolver};
+use crate::solver::{ActiveSet, Auto, ContactSolver, Multigrid, SolverError, SolverOptions, StackSolver};
 use crate::text::{excerpt, grouped};
 
 /// The case and its meshes.
@@ -267,17 +267,26 @@ pub(crate) fn solver(name: SolverName) -> Box<dyn ContactSolver> {
     }
 }
 
-/// The solver of this name for a stack; multigrid knows the paper's pair only.
-pub(crate) fn stack_solver(name: SolverName) -> Option<Box<dyn StackSolver>> {
-    match name {
-        SolverName::ActiveSet => Some(Box::new(ActiveSet)),
-        SolverName::Auto => Some(Box::new(Auto)),
+/// The solver of this name for a stack; multigrid does not solve every one.
+pub(crate) fn stack_solver(
+    name: SolverName,
+    problem: &ContactProblem,
+) -> Result<Box<dyn StackSolver>, SolverError> {
+    let obstacles = [problem.ceiling(), problem.floor()].map(|obstacle| obstacle.is_some());
+    Ok(match name {
+        SolverName::ActiveSet => Box::new(ActiveSet),
+        SolverName::Multigrid if !Multigrid::solves_stack(problem.membranes().len(), obstacles) => {
+            return Err(SolverError::Coupled);
+        }
+        SolverName::Multigrid => Box::new(Multigrid),
+        SolverName::Auto => Box::new(Auto),
         #[cfg(feature = "clarabel")]
-        SolverName::Clarabel => Some(Box::new(QpSolver::new(crate::qp::Clarabel))),
+        SolverName::Clarabel => Box::new(QpSolver::new(crate::qp::Clarabel)),
         #[cfg(feature = "osqp")]
-        SolverName::Osqp => Some(Box::new(QpSolver::new(crate::qp::Osqp))),
-        _ => None,
-    }
+        SolverName::Osqp => Box::new(QpSolver::new(crate::qp::Osqp)),
+        #[allow(unreachable_patterns, reason = "with both features there is no other")]
+        _ => unreachable!("the name is refused where it is parsed"),
+    })
 }
 
 /// What the settings ask of a solver.
@@ -296,6 +305,18 @@ pub(crate) fn options(settings: &SolverSettings) -> SolverOptions {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::problem::Membrane;
+
+    #[test]
+    fn multigrid_is_refused_for_what_it_does_not_solve() {
+        let sheet = || Membrane::new(1.0).load(-1.0);
+        let floor = ContactProblem::obstacle(sheet(), -1.0).unwrap();
+        let two = ContactProblem::stack().membrane(sheet()).membrane(sheet()).floor(-1.0).build().unwrap();
+        let refused = |name, problem| stack_solver(name, problem).err();
+        assert_eq!(refused(SolverName::Multigrid, &floor), None);
+        assert_eq!(refused(SolverName::Multigrid, &two), Some(SolverError::Coupled));
+        assert_eq!(refused(SolverName::Auto, &two), None);
+    }
 
     #[test]
     fn groups_that_are_not_used_are_one_line_of_80_columns() {

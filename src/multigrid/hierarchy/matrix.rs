@@ -3,7 +3,6 @@
 use sprs::CsMat;
 
 use super::ordering::inverse;
-use crate::mesh::VertexKind;
 use crate::parallel::BLOCK;
 use crate::parallel::prelude::*;
 
@@ -206,15 +205,15 @@ pub(crate) fn reordered(
     assemble(order.par_chunks(BLOCK).map(block).collect())
 }
 
-/// `K` with empty rows for held vertices, the vertices in this order.
-pub(crate) fn compact_stiffness(k: &CsMat<f64>, kind: &[VertexKind], order: &[u32]) -> (Pattern, Values) {
+/// `K` with empty rows for vertices that are not `free`, the vertices in this order.
+pub(crate) fn compact_stiffness(k: &CsMat<f64>, free: &[bool], order: &[u32]) -> (Pattern, Values) {
     let position = inverse(order);
     let block = |block: &[u32]| {
         let mut rows = Rows::with_capacity(BLOCK);
         for &a in block {
             let a = a as usize;
             let mut diagonal = 0.0;
-            if kind[a] == VertexKind::Interior {
+            if free[a] {
                 let row = k.outer_view(a).expect("a vertex has a row");
                 for (b, &value) in row.iter() {
                     if b == a {

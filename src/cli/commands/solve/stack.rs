@@ -8,17 +8,19 @@ use super::report::{UNTOUCHED, certified_line, mesh_line, polish_line, reject, s
 use crate::action::{Rejected, StackSolution, certify_stack};
 use crate::cli::args::SolveArguments;
 use crate::cli::case::MeshSource;
-use crate::cli::commands::solution::A_SOLUTION;
+use crate::cli::commands::solution::{A_SOLUTION, left_out_line};
 use crate::cli::failure::Failure;
 use crate::cli::run::clock::Clock;
-use crate::cli::run::files::{Part, SOLUTION, SUMMARY};
+use crate::cli::run::files::{MEMBRANES, Part, SOLUTION, SUMMARY};
 use crate::cli::run::folder::{Claim, Folder};
+use crate::cli::run::pictures::Pictures;
 use crate::cli::run::progress::Progress;
 use crate::cli::run::setup::{Setup, options, stack_solver, too_early, unused_groups};
 use crate::cli::run::watch::Watch;
 use crate::cli::terminal::{fields, fixed, print, wrapped};
 use crate::discretization::StackDiscretization;
 use crate::output::{ContactSummary, Seconds, Summary, write_stack_vtu};
+use crate::pictures::stack::{StackPicture, render};
 use crate::qp::{Status, TimeLimit};
 use crate::solver::{PolishReport, Statistics};
 use crate::text::grouped;
@@ -26,18 +28,12 @@ use crate::text::grouped;
 pub(super) fn run(
     setup: &Setup,
     arguments: &SolveArguments,
-    (clock, watch): (&Clock, &Watch),
+    (clock, watch, pictures): (&Clock, &Watch, &Pictures),
     progress: Progress,
 ) -> Result<(), Failure> {
     let settings = &setup.case.solver;
-    let Some(solver) = stack_solver(settings.name) else {
-        let remedy = "choose auto, active-set, or a QP solver";
-        return Err(Failure::Input(format!(
-            "{}: {} is for a pair so far: {remedy}",
-            setup.name,
-            settings.name.as_str()
-        )));
-    };
+    let solver = stack_solver(settings.name, &setup.case.problem)
+        .map_err(|error| Failure::Input(format!("{}: {error}", setup.name)))?;
     if arguments.dual {
         return Err(Failure::Input(format!("{}: --dual is for a pair so far: leave it out", setup.name)));
     }
@@ -66,10 +62,11 @@ pub(super) fn run(
         reject(&setup.name, &folder, &summary, &rejected)
     })?;
     progress.stage("writing the results");
-    let summary = write_results(setup, &d, &solution, seconds, &folder)?;
+    let (d, solution) = (Arc::new(d), Arc::new(solution));
+    let summary = write_results(setup, &d, &solution, seconds, (&folder, pictures))?;
     drop(progress);
     if !arguments.case.quiet {
-        let table = table(&summary, solution.statistics().polish, d.unknowns(), folder.path());
+        let table = table(&summary, solution.statistics().polish, folder.path(), pictures);
         print(&(table + &unused_groups(&setup.groups)))?;
     }
     Ok(())
@@ -105,25 +102,34 @@ fn too_late(
 
 fn write_results(
     setup: &Setup,
-    d: &StackDiscretization,
-    solution: &StackSolution,
+    d: &Arc<StackDiscretization>,
+    solution: &Arc<StackSolution>,
     seconds: Seconds,
-    folder: &Folder,
+    (folder, pictures): (&Folder, &Pictures),
 ) -> Result<Summary, Failure> {
     let start = Instant::now();
     let mut results = folder.results(Part::Solution);
     // The names of a mesh file are its author's; those of generators are known.
     let groups = matches!(setup.case.mesh, MeshSource::File(_));
     results.write(SOLUTION, |out| write_stack_vtu(d, solution, groups, out))?;
+    let (title, of_picture, drawn) = (setup.case.title.clone(), Arc::clone(d), Arc::clone(solution));
+    let draw = move || {
+        let picture = StackPicture::of(&title, &of_picture, &drawn);
+        render(&picture).map_err(|error| error.to_string())
+    };
+    let left_out =
+        pictures.write(MEMBRANES, draw, |file, bytes| results.write(file, |out| out.write_all(bytes)))?;
     let seconds = Seconds { output: start.elapsed().as_secs_f64(), ..seconds };
-    let summary = summary(setup, d, Ok(solution), seconds);
+    let summary = Summary { left_out, ..summary(setup, d, Ok(solution), seconds) };
     results.write(SUMMARY, |out| summary.write(out))?;
     results.publish()?;
     Ok(summary)
 }
 
 /// The summary for the eye.
-fn table(summary: &Summary, polish: Option<PolishReport>, unknowns: usize, folder: &Path) -> String {
+fn table(summary: &Summary, polish: Option<PolishReport>, folder: &Path, pictures: &Pictures) -> String {
+    let mut files = [vec![SOLUTION, SUMMARY], pictures.files(MEMBRANES)].concat();
+    files.retain(|name| !summary.left_out.contains(name));
     let seconds = &summary.seconds;
     let number = |value: Option<f64>| value.map_or_else(String::new, |value| fixed(value, 8));
     let contacts = summary.contacts.as_deref().unwrap_or_default();
@@ -141,7 +147,7 @@ fn table(summary: &Summary, polish: Option<PolishReport>, unknowns: usize, folde
         summary.reactions.iter().flatten().map(|&reaction| fixed(reaction, 6)).collect();
     let rows = [
         ("mesh", mesh_line(summary)),
-        ("membranes", format!("{}, {} unknowns", summary.membranes.unwrap_or(0), grouped(unknowns))),
+        ("membranes", format!("{}, {} unknowns", summary.membranes.unwrap_or(0), grouped(summary.unknowns))),
         ("solver", solver_line(summary)),
         ("chosen", summary.choice.clone().unwrap_or_default()),
         ("polish", polish.map_or_else(String::new, polish_line)),
@@ -164,7 +170,8 @@ fn table(summary: &Summary, polish: Option<PolishReport>, unknowns: usize, folde
                 seconds.output
             ),
         ),
-        ("files", format!("{}/{{{SOLUTION}, {SUMMARY}}}", folder.display())),
+        ("left out", left_out_line(&summary.left_out)),
+        ("files", format!("{}/{{{}}}", folder.display(), files.join(", "))),
     ];
     format!("{}\n{}", wrapped(&summary.title, 2), fields(&rows))
 }
