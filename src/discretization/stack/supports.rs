@@ -104,12 +104,11 @@ fn sorted([a, b]: [usize; 2]) -> [usize; 2] {
     [a.min(b), a.max(b)]
 }
 
+/// A part of the data, and the edges that it is for.
+type Part<'m> = (&'m Support, Vec<[usize; 2]>);
+
 /// The edges that each part of the data is for; those of the boundary that no part names belong to the rest.
-fn edges_of_parts<'m>(
-    mesh: &Mesh,
-    membrane: &'m Membrane,
-    i: usize,
-) -> Result<Vec<(&'m Support, Vec<[usize; 2]>)>, StackError> {
+fn edges_of_parts<'m>(mesh: &Mesh, membrane: &'m Membrane, i: usize) -> Result<Vec<Part<'m>>, StackError> {
     let groups = mesh.groups();
     let datum = || format!("the support of membrane {i}");
     let mut part_of: HashMap<[usize; 2], usize> = HashMap::new();

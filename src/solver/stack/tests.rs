@@ -10,7 +10,9 @@ use crate::numeric::largest;
 use crate::problem::{ContactProblem, Field, Function, Membrane};
 #[cfg(feature = "clarabel")]
 use crate::qp::Clarabel;
-use crate::solver::{ActiveSet, Auto, ContactSolver, QpSolver, SolverOptions, StackSolver};
+#[cfg(any(feature = "clarabel", feature = "osqp"))]
+use crate::solver::QpSolver;
+use crate::solver::{ActiveSet, Auto, ContactSolver, SolverOptions, StackSolver};
 
 /// Rounding of displacements of size one on meshes of some thousand triangles.
 const ROUNDING: f64 = 1e-12;
