@@ -125,9 +125,9 @@ impl StackDiscretization {
             field.map_or(Ok(Vec::new()), |field| borders(mesh, field, name))
         };
         let obstacle_lines = [lines(problem.ceiling(), "the ceiling")?, lines(problem.floor(), "the floor")?];
-        check_order(mesh, &membranes, &mut obstacles)?;
         let scales = scales::scales(mesh, &membranes, &tensions, &obstacles, &dual_area);
         scales::check_range(&scales, &tensions)?;
+        check_order(mesh, &membranes, &mut obstacles, scales.displacement)?;
         let mut stack = Self {
             membranes,
             stiffness,

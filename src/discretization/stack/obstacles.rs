@@ -3,7 +3,6 @@
 use super::error::StackError;
 use super::fields::at_vertices;
 use super::membrane::MembraneData;
-use super::scales::largest_height;
 use crate::mesh::{Mesh, VertexKind};
 use crate::problem::Field;
 
@@ -27,11 +26,13 @@ pub(super) fn obstacle(
     Ok(Some(heights))
 }
 
-/// At every vertex, what is known of the layers comes in order from the top. An obstacle that cuts through by rounding is moved.
+/// At every vertex, what is known of the layers comes in order from the top. An obstacle that cuts through by rounding, of heights of
+/// this `size`, is moved.
 pub(super) fn check_order(
     mesh: &Mesh,
     membranes: &[MembraneData],
     obstacles: &mut [Option<Vec<f64>>; 2],
+    size: f64,
 ) -> Result<(), StackError> {
     let last = membranes.len() + 1;
     let name = |layer: usize| match layer {
@@ -39,7 +40,6 @@ pub(super) fn check_order(
         _ if layer == last => "the floor".to_string(),
         _ => format!("membrane {layer}"),
     };
-    let size = largest_height(membranes, obstacles);
     for a in (0..mesh.points().len()).filter(|&a| mesh.kind()[a] != VertexKind::Unused) {
         let fixed =
             membranes.iter().enumerate().filter_map(|(k, membrane)| Some((k + 1, membrane.height[a]?)));
