@@ -46,7 +46,7 @@ pub enum MeshSize {
 /// Makes a mesh of `domain`. An unstructured disk, like a structured one, is an inscribed polygon.
 ///
 /// The sides have names, which an unstructured mesh shares with a structured one: see [`rectangle`], [`l_shape`], [`disk`]
-/// and [`polygon`].
+/// and [`polygon()`].
 ///
 /// # Errors
 /// [`GenerateError`]: sizes or extents out of range, too many vertices, a polygon that is none.
