@@ -1,6 +1,6 @@
 //! The certificate of a stack, and its certified solution.
 
-mod chains;
+mod forces;
 mod lines;
 mod projection;
 mod residuals;
@@ -11,7 +11,6 @@ pub use solution::{GapSolution, StackSolution};
 use super::certificate::{Reason, Rejected};
 use crate::discretization::StackDiscretization;
 use crate::solver::StackCandidate;
-use chains::Chains;
 use projection::Projection;
 
 /// Checks a candidate against `K_i`, `F_i`, heights and obstacles and hands it out as a solution when every residual, beyond
@@ -35,8 +34,7 @@ pub fn certify_stack(
     if !lengths_fit {
         return Err(Box::new(Rejected { reason: Reason::Lengths, residuals: None, statistics }));
     }
-    let chains = Chains::new(d);
-    let residuals = residuals::residuals(&chains, &displacement, &multiplier);
+    let residuals = residuals::residuals(d, &displacement, &multiplier);
     let worst =
         residuals.named().into_iter().max_by(|p, q| p.1.beyond_rounding.total_cmp(&q.1.beyond_rounding));
     match worst {
@@ -45,7 +43,7 @@ pub fn certify_stack(
             Err(Box::new(Rejected { reason, residuals: Some(residuals), statistics }))
         }
         _ => {
-            let projection = Projection::new(&chains, displacement, &multiplier);
+            let projection = Projection::new(d, displacement, &multiplier);
             Ok(StackSolution::new(d, projection, residuals, statistics))
         }
     }

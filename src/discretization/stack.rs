@@ -7,6 +7,8 @@ mod membrane;
 mod obstacles;
 mod scales;
 mod supports;
+#[cfg(test)]
+mod tests;
 
 use std::sync::Arc;
 
@@ -17,7 +19,8 @@ use crate::fem::weighted_stiffness;
 use crate::mesh::{Mesh, VertexTriangles};
 use crate::problem::{ContactProblem, Field};
 
-pub(crate) use chain::{Layer, Segment, segments};
+pub(crate) use chain::Segment;
+use chain::{Layer, segments};
 pub use error::StackError;
 pub use fields::IntegrationRule;
 use fields::{POSITIVE, borders, means};
@@ -185,6 +188,25 @@ impl StackDiscretization {
         self.row_start[gap]..self.row_start[gap + 1]
     }
 
+    /// The row of gap `k` at vertex `a`, where there is one.
+    pub(crate) fn row(&self, k: usize, a: usize) -> Option<usize> {
+        let of_gap = self.rows_of(k);
+        let found = self.rows[of_gap.clone()].binary_search_by_key(&a, |row| row.vertex).ok()?;
+        Some(of_gap.start + found)
+    }
+
+    /// The segments at vertex `a`, from the top, where the layers of the `closed` rows touch; `layers` is memory.
+    pub(crate) fn segments<'l>(
+        &'l self,
+        a: usize,
+        closed: &'l [bool],
+        layers: &'l mut Vec<Layer>,
+    ) -> impl Iterator<Item = Segment> + 'l {
+        layers.clear();
+        layers.extend((0..=self.membranes.len() + 1).map(|layer| self.layer(layer, a)));
+        segments(layers, move |gap| self.row(gap, a).is_some_and(|row| closed[row]))
+    }
+
     /// How many unknowns there are in all membranes.
     pub fn unknowns(&self) -> usize {
         self.unknowns
@@ -322,12 +344,6 @@ impl StackDiscretization {
         let load = self.membranes[i - 1].load[a];
         let [force, terms] = self.stiffness_times(i, a, u);
         [force - load, terms + load.abs()]
-    }
-
-    /// All layers at vertex `a`, from the ceiling to the floor, written to `layers`.
-    pub(crate) fn layers_at(&self, a: usize, layers: &mut Vec<Layer>) {
-        layers.clear();
-        layers.extend((0..=self.membranes.len() + 1).map(|layer| self.layer(layer, a)));
     }
 
     /// Displacements over vertices from the values of the unknowns; heights where they are fixed.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{Expression, Function};
+use super::Function;
 
 /// A tension, a load, a foundation, a height, or an obstacle, as a datum over the domain.
 ///
@@ -92,16 +92,6 @@ impl<F: Into<Function>> From<F> for Field {
     }
 }
 
-impl Field {
-    /// The formula or number in a text.
-    ///
-    /// # Errors
-    /// As [`Expression::parse`].
-    pub fn parse(text: &str) -> Result<Self, super::ExpressionError> {
-        Expression::parse(text).map(Self::from)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -115,7 +105,7 @@ mod tests {
         );
         let field = field.elsewhere(5.0);
         assert_eq!((field.numbers().last(), field.constant()), (Some(&5.0), None));
-        let everywhere = Field::parse("x + 1").unwrap();
+        let everywhere = Field::from("x + 1".parse::<crate::problem::Expression>().unwrap());
         assert!(everywhere.names().next().is_none() && everywhere.numbers().is_empty());
         assert!(everywhere.function().is_some() && field.function().is_none());
         assert_eq!(Field::PerVertex([1.0].into()).elsewhere(3.0).constant(), Some(3.0));

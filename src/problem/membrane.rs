@@ -86,17 +86,11 @@ impl Membrane {
         self.support_on(curve, Support::Free { traction: traction.into() })
     }
 
-    /// How it is held on a named curve; what was said before of that curve is forgotten.
-    pub fn support_on(mut self, curve: impl Into<String>, support: Support) -> Self {
+    /// What was said before of that curve is forgotten.
+    fn support_on(mut self, curve: impl Into<String>, support: Support) -> Self {
         let curve = curve.into();
         self.parts.retain(|(name, _)| *name != curve);
         self.parts.push((curve, support));
-        self
-    }
-
-    /// How it is held where no named curve says otherwise.
-    pub fn support_elsewhere(mut self, support: Support) -> Self {
-        self.elsewhere = support;
         self
     }
 

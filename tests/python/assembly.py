@@ -29,13 +29,13 @@ def dual_areas(points: Vector, triangles: Indices) -> Vector:
     return np.bincount(triangles.ravel(), weights=third, minlength=len(points))
 
 
-def stiffness(points: Vector, triangles: Indices) -> sp.csc_matrix:
-    """The P1 stiffness matrix of unit coefficient, shape (vertices, vertices).
+def stiffness(points: Vector, triangles: Indices, tension: Vector | float = 1.0) -> sp.csc_matrix:
+    """The P1 stiffness matrix, shape (vertices, vertices), of a tension for each triangle.
 
-    On a triangle of area |T|, with e_a the edge opposite to vertex a, it is (e_a . e_b) / (4 |T|).
+    On a triangle of area |T|, with e_a the edge opposite to vertex a, it is mu (e_a . e_b) / (4 |T|).
     """
     edges = points[np.roll(triangles, -2, axis=1)] - points[np.roll(triangles, -1, axis=1)]
-    local = np.einsum("tad,tbd,t->tab", edges, edges, 0.25 / np.abs(areas(points, triangles)))
+    local = np.einsum("tad,tbd,t->tab", edges, edges, 0.25 * tension / np.abs(areas(points, triangles)))
     rows, columns = np.repeat(triangles, 3, axis=1).ravel(), np.tile(triangles, 3).ravel()
     return sp.csc_matrix((local.ravel(), (rows, columns)), shape=(len(points), len(points)))
 

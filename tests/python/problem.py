@@ -64,11 +64,14 @@ class ExportedProblem:
 def read_npz(directory: Path) -> ExportedProblem:
     """The problem in `directory/problem.npz`."""
     with np.load(directory / "problem.npz") as arrays:
-        matrices = _matrix(arrays, "P"), arrays["q"], _matrix(arrays, "A")
-        qp = QuadraticProgram(*matrices, arrays["b"], float(arrays["constant"]))
-        return ExportedProblem(
-            qp, arrays["interior"], arrays["dual_area"], arrays["points"], arrays["triangles"]
-        )
+        names = ("interior", "dual_area", "points", "triangles")
+        return ExportedProblem(read_program(arrays), *(arrays[name] for name in names))
+
+
+def read_program(arrays: np.lib.npyio.NpzFile) -> QuadraticProgram:
+    """The QP in the arrays of an exported file."""
+    matrices = _matrix(arrays, "P"), arrays["q"], _matrix(arrays, "A")
+    return QuadraticProgram(*matrices, arrays["b"], float(arrays["constant"]))
 
 
 def _matrix(arrays: np.lib.npyio.NpzFile, name: str) -> sp.csc_matrix:

@@ -1,6 +1,6 @@
 //! From a candidate within the tolerance to displacements in their cone and actions in theirs, complementary to the last bit.
 
-use super::chains::Chains;
+use super::forces::forces;
 use crate::action::CutOff;
 use crate::action::recovery::ROUNDINGS;
 use crate::discretization::{Displacements, Segment, StackDiscretization};
@@ -18,16 +18,15 @@ pub(super) struct Projection {
 }
 
 impl Projection {
-    pub(super) fn new(chains: &Chains, mut displacement: Displacements, multiplier: &[f64]) -> Self {
-        let d = chains.d;
+    pub(super) fn new(d: &StackDiscretization, mut displacement: Displacements, multiplier: &[f64]) -> Self {
         let scales = d.scales();
         let mut moved = take_known_heights(d, &mut displacement);
         let mut touching: Vec<bool> =
             (0..multiplier.len()).map(|row| touches(d, &displacement, row, multiplier[row])).collect();
         for a in 0..d.dual_area().len() {
-            moved = close_gaps(chains, a, &mut touching, &mut displacement).max(moved);
+            moved = close_gaps(d, a, &mut touching, &mut displacement).max(moved);
         }
-        let forces = chains.forces(&displacement, &touching, None);
+        let forces = forces(d, &displacement, &touching, None);
         let densities = |row: usize, force: f64| force.abs() / d.dual_area()[d.rows()[row].vertex];
         let mut dropped: f64 = 0.0;
         let mut action = forces.action;
@@ -81,14 +80,18 @@ fn touches(d: &StackDiscretization, u: &[Vec<f64>], row: usize, multiplier: f64)
 }
 
 /// Moves all that touches at a vertex together, and what passes through a neighbour by that too; the largest change.
-fn close_gaps(chains: &Chains, a: usize, touching: &mut [bool], displacement: &mut Displacements) -> f64 {
-    let d = chains.d;
+fn close_gaps(
+    d: &StackDiscretization,
+    a: usize,
+    touching: &mut [bool],
+    displacement: &mut Displacements,
+) -> f64 {
     let mut layers = Vec::new();
     let mut moved: f64 = 0.0;
-    let rows: Vec<usize> = (0..=d.membranes()).filter_map(|gap| chains.row(gap, a)).collect();
+    let rows: Vec<usize> = (0..=d.membranes()).filter_map(|gap| d.row(gap, a)).collect();
     // Each pass but the last closes one more gap.
     for _ in 0..=rows.len() {
-        for segment in chains.segments(a, touching, &mut layers) {
+        for segment in d.segments(a, touching, &mut layers) {
             let height = common_height(d, a, &segment, displacement);
             for i in segment.layers {
                 moved = moved.max((displacement[i - 1][a] - height).abs());

@@ -1,12 +1,12 @@
 //! How far displacements and multipliers of a stack are from solving its discrete problem.
 
-use super::chains::Chains;
+use super::forces::forces;
 use crate::action::recovery::ROUNDINGS;
 use crate::action::residuals::{Residual, Residuals, hat_integrals};
+use crate::discretization::StackDiscretization;
 
 /// Recomputes all checks, from `K_i`, `F_i`, heights and obstacles.
-pub(super) fn residuals(chains: &Chains, u: &[Vec<f64>], multiplier: &[f64]) -> Residuals {
-    let d = chains.d;
+pub(super) fn residuals(d: &StackDiscretization, u: &[Vec<f64>], multiplier: &[f64]) -> Residuals {
     let (force, length) = (d.scales().force_density, d.scales().displacement);
     let area = d.dual_area();
     let of_force = |a: usize, defect: f64, rounding: f64| {
@@ -16,7 +16,7 @@ pub(super) fn residuals(chains: &Chains, u: &[Vec<f64>], multiplier: &[f64]) -> 
     let mut all = Residuals::default();
     let mut add = |residuals: Residuals| all = all.larger(residuals);
 
-    let y = |gap: usize, a: usize| chains.row(gap, a).map_or(0.0, |row| multiplier[row]);
+    let y = |gap: usize, a: usize| d.row(gap, a).map_or(0.0, |row| multiplier[row]);
     for i in 1..=d.membranes() {
         let u = &u[i - 1];
         for &a in d.free_vertices(i) {
@@ -34,7 +34,7 @@ pub(super) fn residuals(chains: &Chains, u: &[Vec<f64>], multiplier: &[f64]) -> 
     // All that a multiplier ties together belongs to one chain, also where an answer leaves a gap.
     let gaps: Vec<f64> = d.rows().iter().map(|row| d.gap(u, row)).collect();
     let tied: Vec<bool> = gaps.iter().zip(multiplier).map(|(&gap, &y)| gap <= 0.0 || y != 0.0).collect();
-    let forces = chains.forces(u, &tied, Some(multiplier));
+    let forces = forces(d, u, &tied, Some(multiplier));
     let integrals = hat_integrals(d.mesh());
     let [mut work, mut work_rounding, mut work_area] = [0.0; 3];
     for (k, row) in d.rows().iter().enumerate() {

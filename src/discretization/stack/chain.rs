@@ -23,33 +23,28 @@ pub(crate) struct Segment {
     pub(crate) below: Option<f64>,
 }
 
-/// The segments of the layers `0 ..= N + 1` at a vertex, where `touches(k)` says whether layers `k` and `k + 1` touch.
-pub(crate) fn segments(layers: &[Layer], touches: impl Fn(usize) -> bool) -> Vec<Segment> {
+/// The segments of the layers `0 ..= N + 1` at a vertex, from the top, where `touches(k)` says whether layers `k` and `k + 1` touch.
+pub(crate) fn segments<'l>(
+    layers: &'l [Layer],
+    touches: impl Fn(usize) -> bool + 'l,
+) -> impl Iterator<Item = Segment> + 'l {
     let known = |layer: usize| match layers[layer] {
         Layer::Known(height) => Some(height),
         _ => None,
     };
-    let is_free = |layer: usize| matches!(layers[layer], Layer::Unknown(_));
-    let mut segments = Vec::new();
-    let mut first = 0;
-    while first < layers.len() {
-        if !is_free(first) {
-            first += 1;
-            continue;
-        }
+    let is_free = |layer: usize| matches!(layers.get(layer), Some(Layer::Unknown(_)));
+    let mut next = 0;
+    std::iter::from_fn(move || {
+        let first = (next..layers.len()).find(|&layer| is_free(layer))?;
         let mut end = first + 1;
-        while end < layers.len() && is_free(end) && touches(end - 1) {
+        while is_free(end) && touches(end - 1) {
             end += 1;
         }
-        let rigid = |neighbour: usize, gap: usize| if touches(gap) { known(neighbour) } else { None };
-        segments.push(Segment {
-            layers: first..end,
-            above: if first > 0 { rigid(first - 1, first - 1) } else { None },
-            below: if end < layers.len() { rigid(end, end - 1) } else { None },
-        });
-        first = end;
-    }
-    segments
+        next = end;
+        let above = first.checked_sub(1).filter(|&gap| touches(gap)).and_then(known);
+        let below = Some(end).filter(|&end| end < layers.len() && touches(end - 1)).and_then(known);
+        Some(Segment { layers: first..end, above, below })
+    })
 }
 
 impl Segment {
@@ -93,7 +88,7 @@ mod tests {
     use Layer::{Absent, Known, Unknown};
 
     fn closed_at(layers: &[Layer], closed: &[usize]) -> Vec<Segment> {
-        segments(layers, |gap| closed.contains(&gap))
+        segments(layers, |gap| closed.contains(&gap)).collect()
     }
 
     fn segment(layers: Range<usize>, above: Option<f64>, below: Option<f64>) -> Segment {

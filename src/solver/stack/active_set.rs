@@ -2,7 +2,7 @@
 
 use web_time::Instant;
 
-use super::reduced::{Equilibrium, Reduced};
+use super::reduced::{Equilibrium, solve};
 use super::{StackCandidate, StackSolver};
 use crate::discretization::StackDiscretization;
 use crate::multigrid::cholesky::NotFactored;
@@ -51,12 +51,11 @@ pub(super) fn settle(
     mut active: Vec<bool>,
     limits: &Limits,
 ) -> Result<Settled, NotFactored> {
-    let reduced = Reduced::new(d);
     let mut stages = [SLIGHT * d.scales().displacement, 0.0].into_iter();
     let mut overlooked = stages.next().expect("two stages");
     let (mut repair, mut repairs) = (Repair::default(), 0);
     loop {
-        let mut equilibrium = reduced.solve(&active)?;
+        let mut equilibrium = solve(d, &active)?;
         let mut wrong = wrong(d, &active, &equilibrium, overlooked);
         if wrong.is_empty()
             && let Some(next) = stages.next()

@@ -2,18 +2,11 @@
 
 use sprs::CsMat;
 
-use crate::discretization::{Displacements, Layer, Segment, StackDiscretization, segments};
+use crate::discretization::{Displacements, Segment, StackDiscretization};
 use crate::multigrid::cholesky::{Cholesky, NotFactored};
 
-/// No row, or no unknown.
+/// No unknown.
 const NONE: u32 = u32::MAX;
-
-/// A stack with the rows of each vertex at hand.
-pub(super) struct Reduced<'d> {
-    d: &'d StackDiscretization,
-    /// The row of gap `k` at vertex `a`, at `a (N + 1) + k`.
-    row_at: Vec<u32>,
-}
 
 /// The displacements of a contact set, the actions in its rows, and the size of the terms that cancel in these.
 pub(super) struct Equilibrium {
@@ -28,132 +21,122 @@ struct Merged {
     number: Vec<u32>,
     /// The height of those that rest on something.
     height: Vec<f64>,
-    /// The unknowns of each merged one.
-    members: Vec<Vec<(usize, usize)>>,
+    /// The membranes and vertices whose unknowns are merged, and where those of each merged one end.
+    members: Vec<(usize, usize)>,
+    ends: Vec<usize>,
 }
 
-impl<'d> Reduced<'d> {
-    pub(super) fn new(d: &'d StackDiscretization) -> Self {
-        let gaps = d.membranes() + 1;
-        let mut row_at = vec![NONE; gaps * d.dual_area().len()];
-        for (k, row) in d.rows().iter().enumerate() {
-            row_at[row.vertex * gaps + row.gap] = k as u32;
-        }
-        Self { d, row_at }
-    }
-
-    /// The row of gap `k` at vertex `a`.
-    fn row(&self, k: usize, a: usize) -> Option<usize> {
-        let row = self.row_at[a * (self.d.membranes() + 1) + k];
-        (row != NONE).then_some(row as usize)
-    }
-
-    /// Calls `visit` with the segments at each vertex.
-    fn for_segments(&self, active: &[bool], mut visit: impl FnMut(usize, &[Layer], Segment)) {
-        let mut layers = Vec::new();
-        for a in 0..self.d.dual_area().len() {
-            self.d.layers_at(a, &mut layers);
-            let touches = |gap: usize| self.row(gap, a).is_some_and(|row| active[row]);
-            for segment in segments(&layers, touches) {
-                visit(a, &layers, segment);
-            }
-        }
-    }
-
-    fn merged(&self, active: &[bool]) -> Merged {
-        let unknowns = self.d.unknowns();
-        let mut merged =
-            Merged { number: vec![NONE; unknowns], height: vec![0.0; unknowns], members: Vec::new() };
-        self.for_segments(active, |a, layers, segment| {
+impl Merged {
+    fn new(d: &StackDiscretization, active: &[bool]) -> Self {
+        let unknowns = d.unknowns();
+        let mut merged = Self {
+            number: vec![NONE; unknowns],
+            height: vec![0.0; unknowns],
+            members: Vec::with_capacity(unknowns),
+            ends: Vec::with_capacity(unknowns),
+        };
+        for_segments(d, active, |a, segment| {
             let rests_on = segment.above.or(segment.below);
-            let number = merged.members.len() as u32;
-            for layer in segment.layers.clone() {
-                let Layer::Unknown(unknown) = layers[layer] else { unreachable!("segments are free") };
+            let number = merged.ends.len() as u32;
+            for i in segment.layers.clone() {
+                let unknown = d.unknown(i, a).expect("segments are free");
                 match rests_on {
                     Some(height) => merged.height[unknown] = height,
                     None => merged.number[unknown] = number,
                 }
             }
             if rests_on.is_none() {
-                merged.members.push(segment.layers.map(|layer| (layer, a)).collect());
+                merged.members.extend(segment.layers.map(|i| (i, a)));
+                merged.ends.push(merged.members.len());
             }
         });
         merged
     }
 
-    /// Solves for the displacements where the `active` rows are closed, and for the actions in them.
-    pub(super) fn solve(&self, active: &[bool]) -> Result<Equilibrium, NotFactored> {
-        let merged = self.merged(active);
-        let (matrix, load) = self.system(&merged);
-        let heights = if load.is_empty() { Vec::new() } else { Cholesky::new(matrix)?.solve(&load)? };
-        let value = |unknown: usize| match merged.number[unknown] {
-            NONE => merged.height[unknown],
-            number => heights[number as usize],
-        };
-        let displacement = self.d.extend(&(0..self.d.unknowns()).map(value).collect::<Vec<f64>>());
-        let mut multiplier = vec![0.0; active.len()];
-        let mut terms = vec![0.0; active.len()];
-        self.for_segments(active, |a, _, segment| {
-            let sides: Vec<[f64; 2]> =
-                segment.layers.clone().map(|i| self.d.imbalance(i, a, &displacement[i - 1])).collect();
-            let first = segment.layers.start;
-            let of_segment = sides.iter().map(|[_, terms]| terms).sum::<f64>();
-            segment.actions(
-                |i| sides[i - first][0],
-                |k, action| {
-                    if let Some(row) = self.row(k, a) {
-                        (multiplier[row], terms[row]) = (action, of_segment);
-                    }
-                },
-            );
-        });
-        Ok(Equilibrium { displacement, multiplier, terms })
+    /// The members of each merged unknown.
+    fn blocks(&self) -> impl Iterator<Item = &[(usize, usize)]> {
+        let starts = std::iter::once(0).chain(self.ends.iter().copied());
+        starts.zip(&self.ends).map(|(start, &end)| &self.members[start..end])
     }
+}
 
-    /// `Q'K Q` and `Q'(F - K g)`: the rows of all that moves as one are added up.
-    fn system(&self, merged: &Merged) -> (CsMat<f64>, Vec<f64>) {
-        let size = merged.members.len();
-        let (mut start, mut columns, mut values) = (vec![0], Vec::new(), Vec::new());
-        let mut load = Vec::with_capacity(size);
-        // Where each column is among the entries of the present row.
-        let mut place = vec![NONE; size];
-        for members in &merged.members {
-            let begin = columns.len();
-            let mut force = 0.0;
-            for &(i, a) in members {
-                force += self.d.load(i)[a];
-                let on_foundation =
-                    std::iter::once((a, self.d.foundation(i, a))).filter(|entry| entry.1 != 0.0);
-                for (b, k) in self.d.stiffness_row(i, a).chain(on_foundation) {
-                    let column = match self.d.unknown(i, b) {
-                        None => {
-                            force -= k * self.d.height(i, b).unwrap_or(0.0);
-                            continue;
-                        }
-                        Some(unknown) if merged.number[unknown] == NONE => {
-                            force -= k * merged.height[unknown];
-                            continue;
-                        }
-                        Some(unknown) => merged.number[unknown] as usize,
-                    };
-                    if place[column] == NONE {
-                        place[column] = columns.len() as u32;
-                        columns.push(column);
-                        values.push(0.0);
-                    }
-                    values[place[column] as usize] += k;
-                }
-            }
-            columns[begin..].iter().for_each(|&column| place[column] = NONE);
-            let mut row: Vec<(usize, f64)> =
-                columns[begin..].iter().copied().zip(values[begin..].iter().copied()).collect();
-            row.sort_unstable_by_key(|&(column, _)| column);
-            for (k, (column, value)) in row.into_iter().enumerate() {
-                (columns[begin + k], values[begin + k]) = (column, value);
-            }
-            start.push(columns.len());
-            load.push(force);
-        }
-        (CsMat::new((size, size), start, columns, values), load)
+/// Calls `visit` with the segments at each vertex.
+fn for_segments(d: &StackDiscretization, active: &[bool], mut visit: impl FnMut(usize, Segment)) {
+    let mut layers = Vec::new();
+    for a in 0..d.dual_area().len() {
+        d.segments(a, active, &mut layers).for_each(|segment| visit(a, segment));
     }
+}
+
+/// Solves for the displacements where the `active` rows are closed, and for the actions in them.
+pub(super) fn solve(d: &StackDiscretization, active: &[bool]) -> Result<Equilibrium, NotFactored> {
+    let merged = Merged::new(d, active);
+    let (matrix, load) = system(d, &merged);
+    let heights = if load.is_empty() { Vec::new() } else { Cholesky::new(matrix)?.solve(&load)? };
+    let value = |unknown: usize| match merged.number[unknown] {
+        NONE => merged.height[unknown],
+        number => heights[number as usize],
+    };
+    let displacement = d.extend(&(0..d.unknowns()).map(value).collect::<Vec<f64>>());
+    let mut multiplier = vec![0.0; active.len()];
+    let mut terms = vec![0.0; active.len()];
+    let mut sides: Vec<[f64; 2]> = Vec::new();
+    for_segments(d, active, |a, segment| {
+        sides.clear();
+        sides.extend(segment.layers.clone().map(|i| d.imbalance(i, a, &displacement[i - 1])));
+        let first = segment.layers.start;
+        let of_segment = sides.iter().map(|[_, terms]| terms).sum::<f64>();
+        segment.actions(
+            |i| sides[i - first][0],
+            |k, action| {
+                if let Some(row) = d.row(k, a) {
+                    (multiplier[row], terms[row]) = (action, of_segment);
+                }
+            },
+        );
+    });
+    Ok(Equilibrium { displacement, multiplier, terms })
+}
+
+/// `Q'K Q` and `Q'(F - K g)`: the rows of all that moves as one are added up.
+fn system(d: &StackDiscretization, merged: &Merged) -> (CsMat<f64>, Vec<f64>) {
+    let size = merged.ends.len();
+    let (mut start, mut columns, mut values) = (vec![0], Vec::new(), Vec::new());
+    let mut load = Vec::with_capacity(size);
+    let mut row: Vec<(usize, f64)> = Vec::new();
+    // Where each column is among the entries of the row.
+    let mut place = vec![NONE; size];
+    for members in merged.blocks() {
+        row.clear();
+        let mut force = 0.0;
+        for &(i, a) in members {
+            force += d.load(i)[a];
+            let on_foundation = std::iter::once((a, d.foundation(i, a))).filter(|entry| entry.1 != 0.0);
+            for (b, k) in d.stiffness_row(i, a).chain(on_foundation) {
+                let column = match d.unknown(i, b) {
+                    None => {
+                        force -= k * d.height(i, b).unwrap_or(0.0);
+                        continue;
+                    }
+                    Some(unknown) if merged.number[unknown] == NONE => {
+                        force -= k * merged.height[unknown];
+                        continue;
+                    }
+                    Some(unknown) => merged.number[unknown] as usize,
+                };
+                if place[column] == NONE {
+                    place[column] = row.len() as u32;
+                    row.push((column, 0.0));
+                }
+                row[place[column] as usize].1 += k;
+            }
+        }
+        row.iter().for_each(|&(column, _)| place[column] = NONE);
+        row.sort_unstable_by_key(|&(column, _)| column);
+        columns.extend(row.iter().map(|&(column, _)| column));
+        values.extend(row.iter().map(|&(_, value)| value));
+        start.push(columns.len());
+        load.push(force);
+    }
+    (CsMat::new((size, size), start, columns, values), load)
 }

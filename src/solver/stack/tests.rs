@@ -1,6 +1,7 @@
 //! Stacks by every solver.
 
 mod exact;
+mod limits;
 mod properties;
 mod published;
 mod radial;

@@ -1,0 +1,158 @@
+//! What cannot be posed, and what data become on a mesh.
+
+use super::{GapRow, IntegrationRule, StackDiscretization, StackError};
+use crate::mesh::{Mesh, Pattern, rectangle};
+use crate::problem::{ContactProblem, Field, Function, Membrane};
+
+/// Rounding of sums of a few dozen terms.
+const ROUNDING: f64 = 1e-13;
+
+/// The unit square in 4 x 4 cells, with the regions `west` and `north`, which overlap, and `east`.
+fn mesh() -> Mesh {
+    let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [4, 4], Pattern::Right).unwrap();
+    let mesh = mesh.with_region("west", |[x, _]| x < 0.5).unwrap();
+    mesh.with_region("north", |[_, y]| y > 0.5).unwrap().with_region("east", |[x, _]| x > 0.5).unwrap()
+}
+
+fn posed(problem: &ContactProblem) -> Result<StackDiscretization, StackError> {
+    StackDiscretization::new(problem, mesh())
+}
+
+fn one(membrane: Membrane) -> Result<StackDiscretization, StackError> {
+    posed(&ContactProblem::stack().membrane(membrane).build().unwrap())
+}
+
+fn over(floor: impl Into<Field>) -> Result<StackDiscretization, StackError> {
+    posed(&ContactProblem::obstacle(Membrane::new(1.0), floor).unwrap())
+}
+
+#[test]
+fn each_datum_that_does_not_fit_is_named() {
+    let sheet = || Membrane::new(1.0);
+    let parts = |names: [&str; 2]| Field::by_region(names.map(|name| (name, 1.0)));
+    let refused: Vec<(Result<StackDiscretization, StackError>, &str)> = vec![
+        (one(sheet().load(parts(["west", "wast"]))), "load f1 is given in the region `wast`"),
+        (one(sheet().load(parts(["west", "north"]))), "load f1 is given twice, in `west` and in `north`"),
+        (one(Membrane::new(Field::by_region([("west", 1.0)]))), "tension mu1 is not given at"),
+        (
+            one(sheet().load(Field::PerVertex([1.0; 24].into()))),
+            "load f1 has 24 values, but the mesh has 25 vertices",
+        ),
+        (
+            one(sheet().foundation(Field::PerTriangle([1.0; 31].into()))),
+            "foundation c1 has 31 values, but the mesh has 32",
+        ),
+        (one(sheet().height(Field::PerTriangle([1.0; 32].into()))), "height g1 is given by triangle"),
+        (over(Field::PerTriangle([-1.0; 32].into())), "the floor is given by triangle"),
+        (one(sheet().height_on("rim", 0.0)), "the support of membrane 1 is given on the curve `rim`"),
+        (one(sheet().height(Function::from_fn(|x, _| 1.0 / (x - 1.0)))), "height g1 is"),
+        (
+            one(sheet().free_on("left").traction_on("right", Function::from_fn(|_, _| f64::NAN))),
+            "line load t1 is NaN",
+        ),
+        (one(sheet().height_on("left", 1e-6)), "the height of membrane 1 jumps at vertex"),
+        (one(sheet().free()), "nothing holds membrane 1"),
+        (one(sheet().load(1e45)), "the forces per area have the size"),
+        (one(Membrane::new(1e45)), "the tension mu1 is"),
+        (over(1e-6), "membrane 1 is at 0 and the floor above it at 1e-6"),
+    ];
+    for (result, words) in refused {
+        let message = result.map(|_| ()).unwrap_err().to_string();
+        assert!(message.starts_with(words) && !message.contains('\n'), "{message}");
+    }
+    assert!(one(sheet().load(parts(["west", "east"]))).is_ok());
+    assert!(one(sheet().load(Field::PerVertex([1.0; 25].into()))).is_ok());
+    // Heights that differ by rounding meet, and so do an obstacle and a height.
+    assert!(one(sheet().height(1.0).height_on("left", 1.0 + 1e-12)).is_ok());
+    assert!(over(1e-15).is_err(), "nothing has a size that it could be small against");
+    let raised = Membrane::new(1.0).height(1.0);
+    let moved = posed(&ContactProblem::obstacle(raised, 1.0 + 1e-14).unwrap()).unwrap();
+    assert!(moved.rows().iter().all(|row| row.bound <= 1.0 + 1e-14));
+    let heights = moved.obstacles()[1].unwrap();
+    assert_eq!((heights[0], heights[12]), (1.0, 1.0 + 1e-14), "at the boundary and inside");
+}
+
+/// Values at the vertices of an affine function, and of a constant on triangles, are that function.
+#[test]
+fn values_on_the_mesh_mean_what_functions_mean() {
+    let affine = |x: f64, y: f64| 3.0 + x - 2.0 * y;
+    let values: Vec<f64> = mesh().points().iter().map(|&[x, y]| affine(x, y)).collect();
+    let of = |field: Field| one(Membrane::new(field.clone()).load(field)).unwrap();
+    let [function, values] = [of(Function::from_fn(affine).into()), of(Field::PerVertex(values.into()))];
+    let same = |one: f64, other: f64| (one - other).abs() < ROUNDING;
+    for a in 0..25 {
+        assert!(same(function.load(1)[a], values.load(1)[a]));
+        assert!(same(function.diagonal(1, a), values.diagonal(1, a)));
+    }
+    let [constant, on_triangles] = [of(2.0.into()), of(Field::PerTriangle([2.0; 32].into()))];
+    assert_eq!(constant.load(1), on_triangles.load(1));
+    // By the vertices, the load is f(a) |D_a|; by quadrature it is not.
+    let problem = ContactProblem::stack().membrane(Membrane::new(1.0).load(Function::from_fn(affine)));
+    let lumped =
+        StackDiscretization::by_rule(&problem.build().unwrap(), mesh(), IntegrationRule::Vertices).unwrap();
+    let at = |a: usize| affine(mesh().points()[a][0], mesh().points()[a][1]) * lumped.dual_area()[a];
+    assert!((0..25).all(|a| same(lumped.load(1)[a], at(a))));
+    assert!((0..25).any(|a| !same(function.load(1)[a], at(a))));
+}
+
+/// A linear line load on the right side: the whole of it, and its moment about the lower end.
+#[test]
+fn line_loads_are_integrated_against_the_hat_functions() {
+    let held = Membrane::new(1.0).traction_on("right", Function::from_fn(|_, y| 2.0 + 6.0 * y));
+    let d = one(held).unwrap();
+    let [total, moment] = (0..25).fold([0.0; 2], |[total, moment], a| {
+        [total + d.load(1)[a], moment + d.load(1)[a] * mesh().points()[a][1]]
+    });
+    assert!((total - 5.0).abs() < ROUNDING && (moment - 3.0).abs() < ROUNDING, "{total} {moment}");
+    assert!(d.free_vertices(1).contains(&14), "the middle of the side is free");
+    assert!(!d.free_vertices(1).contains(&4) && !d.free_vertices(1).contains(&24), "its ends are held");
+}
+
+/// Where regions meet whose obstacles differ, the stricter one counts.
+#[test]
+fn obstacles_of_regions_meet_at_the_stricter_one() {
+    let by_region = Field::by_region([("west", -0.5), ("east", -0.2)]);
+    let problem = ContactProblem::stack().membrane(Membrane::new(1.0));
+    let ceiling = Field::by_region([("west", 0.5), ("east", 0.2)]);
+    let d = posed(&problem.floor(by_region).ceiling(ceiling).build().unwrap()).unwrap();
+    let [ceiling, floor] = d.obstacles().map(|obstacle| obstacle.unwrap());
+    for (a, &[x, _]) in mesh().points().iter().enumerate() {
+        let expected = if x < 0.5 { [0.5, -0.5] } else { [0.2, -0.2] };
+        assert_eq!([ceiling[a], floor[a]], expected);
+    }
+    // The borders of the regions may carry actions of their own.
+    assert_eq!(d.lines(1).len(), 4);
+}
+
+/// Rows come by gap and vertex, and a side that is known is in the bound.
+#[test]
+fn each_gap_has_a_row_where_a_side_is_free() {
+    let upper = Membrane::new(1.0).height(0.3).free_on("left");
+    let stack = ContactProblem::stack().membrane(upper).membrane(Membrane::new(1.0)).ceiling(2.0);
+    let d = posed(&stack.build().unwrap()).unwrap();
+    assert_eq!((d.gaps(), d.unknowns()), (vec![0, 1], 12 + 9));
+    let row = |k: usize, a: usize| d.row(k, a).map(|row| d.rows()[row]);
+    // Vertex 10 is the middle of the left side, 12 that of the square, 2 that of the lower side.
+    let upper = d.unknown(1, 10);
+    assert_eq!(row(0, 10), Some(GapRow { gap: 0, vertex: 10, upper: None, lower: upper, bound: -2.0 }));
+    assert_eq!(row(1, 10), Some(GapRow { gap: 1, vertex: 10, upper, lower: None, bound: 0.0 }));
+    let [upper, lower] = [d.unknown(1, 12), d.unknown(2, 12)];
+    assert_eq!(row(1, 12), Some(GapRow { gap: 1, vertex: 12, upper, lower, bound: 0.0 }));
+    assert_eq!((row(0, 2), row(1, 2), row(2, 12)), (None, None, None));
+    assert_eq!(d.rows().len(), 12 + 12);
+}
+
+/// Tensions in proportion share a matrix; others do not.
+#[test]
+fn membranes_share_a_matrix_where_their_tensions_are_in_proportion() {
+    let matrices = |tensions: [Field; 2]| {
+        let membranes = tensions.map(Membrane::new);
+        let [upper, lower] = membranes;
+        let stack = ContactProblem::stack().membrane(upper).membrane(lower).floor(-1.0);
+        posed(&stack.build().unwrap()).unwrap().stiffness.len()
+    };
+    let split = |west: f64, east: f64| Field::by_region([("west", west), ("east", east)]);
+    assert_eq!(matrices([1.0.into(), 3.7.into()]), 1);
+    assert_eq!(matrices([split(1.0, 2.0), split(4.0, 8.0)]), 1);
+    assert_eq!(matrices([split(1.0, 2.0), split(4.0, 4.0)]), 2);
+}
