@@ -242,5 +242,7 @@ fn the_examples_have_the_published_values() {
     // By quadrature it is another one.
     assert!(!near(energy(&example("bearing.toml").replace("\"vertices\"", "\"quadrature\"")), -0.18005));
     assert_eq!(solved(&example("ball.toml")).1["contact_vertices"], 29);
-    assert_eq!(solved(&example("dam.toml")).1["certified"], true);
+    for name in ["dam.toml", "stack.toml"] {
+        assert_eq!(solved(&example(name)).1["certified"], true);
+    }
 }
