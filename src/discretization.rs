@@ -86,10 +86,7 @@ impl Discretization {
         let load = [0, 1].map(|i: usize| moments[i].vector(mesh, &around));
         let height = boundary_height(pair, mesh)?;
         let stiffness = stiffness_around(mesh, &around);
-        // |D_a| = |Delta_a| / 3 (4.17)
-        let dual_area = (0..mesh.points().len())
-            .map(|a| around.of(a).iter().map(|&t| mesh.triangle_area(t)).sum::<f64>() / 3.0)
-            .collect::<Vec<f64>>();
+        let dual_area = dual_areas(mesh, &around);
         let vertices = || 0..mesh.points().len();
         let interior: Vec<usize> = vertices().filter(|&a| mesh.kind()[a] == VertexKind::Interior).collect();
         let scales = Scales::new(mesh, pair.tension(), &load, &height, &dual_area);
@@ -288,6 +285,12 @@ fn boundary_height(pair: &Pair, mesh: &Mesh) -> Result<Vec<f64>, DiscretizationE
     let mut height = vec![0.0; mesh.points().len()];
     boundary.iter().zip(values).for_each(|(&a, value)| height[a] = value);
     Ok(height)
+}
+
+/// `|D_a| = |Delta_a| / 3` (4.17), over vertices.
+fn dual_areas(mesh: &Mesh, around: &VertexTriangles) -> Vec<f64> {
+    let at = |a: usize| around.of(a).iter().map(|&t| mesh.triangle_area(t)).sum::<f64>() / 3.0;
+    (0..mesh.points().len()).map(at).collect()
 }
 
 /// The rows and columns `chosen` (increasing) of a matrix.

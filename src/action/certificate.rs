@@ -31,17 +31,20 @@ pub fn certify(
     }
     let action = Action::recover(d, &displacement);
     let residuals = Residuals::new(d, &displacement, &multiplier, &action);
-    let worst =
-        residuals.named().into_iter().max_by(|p, q| p.1.beyond_rounding.total_cmp(&q.1.beyond_rounding));
-    match worst {
-        Some((check, residual)) if !(residual.beyond_rounding <= tolerance) => {
-            let reason = Reason::Residual { check, value: residual.value, tolerance };
-            Err(Box::new(Rejected { reason, residuals: Some(residuals), statistics }))
-        }
-        _ => {
-            let projection = Projection::new(d, displacement, &multiplier, action);
-            Ok(ContactSolution::new(d, projection, residuals, statistics))
-        }
+    if let Some(reason) = Reason::of(&residuals, tolerance) {
+        return Err(Box::new(Rejected { reason, residuals: Some(residuals), statistics }));
+    }
+    let projection = Projection::new(d, displacement, &multiplier, action);
+    Ok(ContactSolution::new(d, projection, residuals, statistics))
+}
+
+impl Reason {
+    /// The worst check, where it is above the tolerance or not a number.
+    pub(super) fn of(residuals: &Residuals, tolerance: f64) -> Option<Self> {
+        let worst =
+            residuals.named().into_iter().max_by(|p, q| p.1.beyond_rounding.total_cmp(&q.1.beyond_rounding));
+        let above = worst.filter(|(_, residual)| !(residual.beyond_rounding <= tolerance));
+        above.map(|(check, residual)| Self::Residual { check, value: residual.value, tolerance })
     }
 }
 

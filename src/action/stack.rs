@@ -35,16 +35,9 @@ pub fn certify_stack(
         return Err(Box::new(Rejected { reason: Reason::Lengths, residuals: None, statistics }));
     }
     let residuals = residuals::residuals(d, &displacement, &multiplier);
-    let worst =
-        residuals.named().into_iter().max_by(|p, q| p.1.beyond_rounding.total_cmp(&q.1.beyond_rounding));
-    match worst {
-        Some((check, residual)) if !(residual.beyond_rounding <= tolerance) => {
-            let reason = Reason::Residual { check, value: residual.value, tolerance };
-            Err(Box::new(Rejected { reason, residuals: Some(residuals), statistics }))
-        }
-        _ => {
-            let projection = Projection::new(d, displacement, &multiplier);
-            Ok(StackSolution::new(d, projection, residuals, statistics))
-        }
+    if let Some(reason) = Reason::of(&residuals, tolerance) {
+        return Err(Box::new(Rejected { reason, residuals: Some(residuals), statistics }));
     }
+    let projection = Projection::new(d, displacement, &multiplier);
+    Ok(StackSolution::new(d, projection, residuals, statistics))
 }

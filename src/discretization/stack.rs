@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 use sprs::CsMat;
 
-use super::Scales;
+use super::{Scales, dual_areas};
 use crate::fem::weighted_stiffness;
 use crate::mesh::{Mesh, VertexTriangles};
 use crate::problem::{ContactProblem, Field};
@@ -24,7 +24,7 @@ use chain::{Layer, segments};
 pub use error::StackError;
 pub use fields::IntegrationRule;
 use fields::{POSITIVE, borders, means};
-use membrane::MembraneData;
+use membrane::{MembraneData, connected_parts};
 use obstacles::{check_order, obstacle};
 
 /// Displacements over vertices, one for each membrane from the top.
@@ -80,6 +80,14 @@ pub struct GapRow {
     pub bound: f64,
 }
 
+impl GapRow {
+    /// Those of the two layers that are free membranes.
+    pub(crate) fn free_layers(&self) -> impl Iterator<Item = usize> + use<> {
+        let Self { gap, upper, lower, .. } = *self;
+        [upper.map(|_| gap), lower.map(|_| gap + 1)].into_iter().flatten()
+    }
+}
+
 impl StackDiscretization {
     /// Assembles the discrete problem. Linear time and memory.
     ///
@@ -101,10 +109,8 @@ impl StackDiscretization {
         let shared: Arc<Mesh> = mesh.into();
         let mesh = &*shared;
         let around = VertexTriangles::new(mesh.points().len(), mesh.triangles());
-        // |D_a| = |Delta_a| / 3 (4.17)
-        let dual_area: Vec<f64> = (0..mesh.points().len())
-            .map(|a| around.of(a).iter().map(|&t| mesh.triangle_area(t)).sum::<f64>() / 3.0)
-            .collect();
+        let dual_area = dual_areas(mesh, &around);
+        let parts = connected_parts(mesh);
         let mut profiles: Vec<Vec<f64>> = Vec::new();
         let (mut membranes, mut unknowns) = (Vec::new(), 0);
         let mut tensions = Vec::new();
@@ -113,7 +119,7 @@ impl StackDiscretization {
             let tension = means(mesh, &membrane.tension, &format!("tension mu{name}"), rule, POSITIVE)?;
             let (factor, profile) = profile(&mut profiles, &tension);
             let data = MembraneData::new(mesh, &around, membrane, name, rule, (factor, profile), unknowns)?;
-            data.check_support(mesh, name)?;
+            data.check_support(mesh, &parts, name)?;
             unknowns += data.vertices.len();
             membranes.push(data);
             tensions.push(tension);

@@ -11,11 +11,11 @@ use super::active_set::{guess, settle};
 use super::candidate::{Candidate, unknowns};
 use super::statistics::PolishReport;
 use crate::discretization::{Discretization, Displacement};
-use crate::qp::{KktResiduals, QpProblem, Status};
+use crate::qp::{KktResiduals, Limits, QpProblem};
 
 /// Linear solves for the gap. An accurate answer needs one to four; where the membranes touch without pushing, the contact
 /// set moves by one layer of vertices at a time. A solve costs about a hundredth of an interior-point solve.
-pub(super) const MAX_STEPS: usize = 100;
+const MAX_STEPS: usize = 100;
 
 /// Polishes the candidate and keeps the result if its KKT residuals are smaller. `None` when a linear system cannot be
 /// solved, or the solve has to stop.
@@ -26,27 +26,23 @@ pub(super) fn polish(
     options: &SolverOptions,
     start: Instant,
 ) -> Option<PolishReport> {
-    // The limit of iterations is the backend's.
-    let limits = options.limits(MAX_STEPS, start).with_iterations(MAX_STEPS);
-    if limits.reached(0).is_some() {
-        return None;
-    }
+    let limits = limits(options, start)?;
     let residual = |displacement: &Displacement, multiplier: &[f64]| {
         KktResiduals::new(qp, &unknowns(d, displacement), multiplier).worst()
     };
     let polished = settle(d, guess(d, &candidate.displacement, &candidate.multiplier), &limits).ok()?;
     let residual_before = residual(&candidate.displacement, &candidate.multiplier);
     let residual_after = residual(&polished.displacement, &polished.multiplier);
-    let kept = residual_after < residual_before;
-    if kept {
+    let report = PolishReport::new(polished.repairs, polished.status, [residual_before, residual_after]);
+    if report.kept {
         candidate.displacement = polished.displacement;
         candidate.multiplier = polished.multiplier;
     }
-    Some(PolishReport {
-        kept,
-        repairs: polished.repairs,
-        settled: polished.status == Status::Solved,
-        residual_before,
-        residual_after,
-    })
+    Some(report)
+}
+
+/// Those of a polish in a solve that has begun at `start`: the limit of iterations is the backend's. `None` where no time is left.
+pub(super) fn limits(options: &SolverOptions, start: Instant) -> Option<Limits> {
+    let limits = options.limits(MAX_STEPS, start).with_iterations(MAX_STEPS);
+    limits.reached(0).is_none().then_some(limits)
 }

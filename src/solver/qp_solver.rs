@@ -21,8 +21,31 @@ impl QpSolver {
         Self { backend: Box::new(backend) }
     }
 
-    pub(super) fn backend_mut(&mut self) -> &mut dyn QpBackend {
-        self.backend.as_mut()
+    /// The backend's answer, in the time that is left since `begin`; what came before it is set-up.
+    pub(super) fn answer(
+        &mut self,
+        qp: &QpProblem,
+        options: &SolverOptions,
+        warm_start: Option<(Vec<f64>, Vec<f64>)>,
+        begin: Instant,
+    ) -> Result<(Answer, Statistics), SolverError> {
+        let posing = begin.elapsed().as_secs_f64();
+        let options = QpOptions {
+            tolerance: options.tolerance,
+            max_iterations: options.max_iterations,
+            time_limit: options
+                .time_limit
+                .map(|limit| limit.left_since(begin).unwrap_or(TimeLimit::SHORTEST)),
+            interrupt: options.interrupt.clone(),
+            warm_start,
+        };
+        let solution = solve_nondimensional(self.backend.as_mut(), qp, &options)?;
+        let statistics = Statistics {
+            iterations: solution.iterations,
+            setup_seconds: posing + solution.setup_seconds,
+            ..Statistics::of(self.backend.name(), solution.status)
+        };
+        Ok((Answer { x: solution.x, y: solution.y }, statistics))
     }
 }
 
@@ -35,14 +58,10 @@ impl ContactSolver for QpSolver {
         options.check()?;
         let start = Instant::now();
         let qp = contact_qp(d);
-        let posing = start.elapsed().as_secs_f64();
-        let solution = solve_nondimensional(self.backend.as_mut(), &qp, &qp_options(d, options, start))?;
-        let statistics = Statistics {
-            iterations: solution.iterations,
-            setup_seconds: posing + solution.setup_seconds,
-            ..Statistics::of(self.name(), solution.status)
-        };
-        let mut candidate = Candidate::from_answer(d, Answer { x: solution.x, y: solution.y }, statistics);
+        let guess = options.warm_start.as_ref().filter(|guess| guess.fits(d));
+        let warm_start = guess.map(|guess| (unknowns(d, &guess.displacement), guess.multiplier.clone()));
+        let (answer, statistics) = self.answer(&qp, options, warm_start, start)?;
+        let mut candidate = Candidate::from_answer(d, answer, statistics);
         if options.polish {
             candidate.statistics.polish = polish(d, &qp, &mut candidate, options, start);
         }
@@ -52,21 +71,8 @@ impl ContactSolver for QpSolver {
     }
 }
 
-/// Of a solve that has begun at `begin`.
-fn qp_options(d: &Discretization, options: &SolverOptions, begin: Instant) -> QpOptions {
-    let start = options.warm_start.as_ref().filter(|start| start.fits(d));
-    let warm_start = start.map(|start| (unknowns(d, &start.displacement), start.multiplier.clone()));
-    QpOptions {
-        tolerance: options.tolerance,
-        max_iterations: options.max_iterations,
-        time_limit: options.time_limit.map(|limit| limit.left_since(begin).unwrap_or(TimeLimit::SHORTEST)),
-        interrupt: options.interrupt.clone(),
-        warm_start,
-    }
-}
-
 /// Has the problem solved in units of size 1, so that one tolerance fits every mesh (`q ~ h^2`) and all data.
-pub(super) fn solve_nondimensional(
+fn solve_nondimensional(
     backend: &mut dyn QpBackend,
     qp: &QpProblem,
     options: &QpOptions,

@@ -89,3 +89,16 @@ pub struct PolishReport {
     /// The largest relative KKT residual of the polished one.
     pub residual_after: f64,
 }
+
+impl PolishReport {
+    /// Of a polish that ended in this way; it is kept where the residual, before and after, has become smaller.
+    pub(super) fn new(repairs: usize, status: Status, [residual_before, residual_after]: [f64; 2]) -> Self {
+        Self {
+            kept: residual_after < residual_before,
+            repairs,
+            settled: status == Status::Solved,
+            residual_before,
+            residual_after,
+        }
+    }
+}

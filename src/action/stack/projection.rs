@@ -59,9 +59,7 @@ fn take_known_heights(d: &StackDiscretization, displacement: &mut Displacements)
 /// The least diagonal entry of the free sides of a row, and the terms that cancel in theirs.
 fn stiffness_of(d: &StackDiscretization, u: &[Vec<f64>], row: usize) -> [f64; 2] {
     let row = &d.rows()[row];
-    let sides = [row.gap, row.gap + 1].into_iter().filter(|&i| 0 < i && i <= d.membranes());
-    let free = sides.filter(|&i| d.unknown(i, row.vertex).is_some());
-    free.fold([f64::INFINITY, 0.0], |[least, terms], i| {
+    row.free_layers().fold([f64::INFINITY, 0.0], |[least, terms], i| {
         let [_, of_membrane] = d.imbalance(i, row.vertex, &u[i - 1]);
         [least.min(d.diagonal(i, row.vertex)), terms + of_membrane]
     })

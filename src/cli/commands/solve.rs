@@ -1,5 +1,6 @@
 //! `membranes solve`.
 
+mod folder;
 mod report;
 mod stack;
 
@@ -7,16 +8,17 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
-use report::{UNTOUCHED, certified_line, mesh_line, polish_line, reject, solver_line};
+use folder::{claim, reject, too_late};
+use report::{certified_line, mesh_line, polish_line, solver_line};
 
-use super::solution::{A_SOLUTION, left_out_line, write_solution};
+use super::solution::{left_out_line, write_solution};
 use crate::action::{ContactSolution, Rejected};
 use crate::cli::args::SolveArguments;
 use crate::cli::case::CaseFile;
 use crate::cli::failure::Failure;
 use crate::cli::run::clock::Clock;
 use crate::cli::run::files::{DUAL, FLUX, MEMBRANES, MESH, Part, SOLUTION, SUMMARY};
-use crate::cli::run::folder::{Claim, Folder, Results};
+use crate::cli::run::folder::{Folder, Results};
 use crate::cli::run::pictures::Pictures;
 use crate::cli::run::progress::Progress;
 use crate::cli::run::setup::{Setup, options, solver, too_early, unused_groups};
@@ -28,8 +30,7 @@ use crate::flux::{Reconstruction, Reconstructor};
 use crate::mesh::{DualMesh, SubTriangulation};
 use crate::output::{Seconds, Summary, write_dual_vtu, write_flux_vtu};
 use crate::pictures::{MeshPicture, render_mesh};
-use crate::qp::{Status, TimeLimit};
-use crate::solver::{PolishReport, Statistics};
+use crate::solver::PolishReport;
 use crate::study::{AccuracyError, Bounded, solve_bounded};
 use crate::text::grouped;
 
@@ -45,16 +46,7 @@ pub(crate) fn run(arguments: &SolveArguments, watch: &Watch) -> Result<(), Failu
         return stack::run(&setup, arguments, (&clock, watch, &pictures), progress);
     }
     let (d, seconds) = setup.discretize(&progress)?;
-    // Nobody may find a folder of which the run says that nothing was written.
-    clock.check(too_early(&arguments.case.path))?;
-    let claim = Claim {
-        case: &setup.id,
-        part: Part::Solution,
-        settings: A_SOLUTION.into(),
-        overwrite: arguments.output.overwrite,
-        says: UNTOUCHED,
-    };
-    let folder = Folder::claim(&arguments.output.folder(&arguments.case.path), &claim, watch)?;
+    let folder = claim(&setup, arguments, &clock, watch)?;
 
     let result = solve(&setup, &d, seconds, &clock, (&folder, watch), &progress);
     watch.lift();
@@ -94,7 +86,11 @@ fn solve(
     let settings = &setup.case.solver;
     let unknowns = grouped(2 * d.interior().len());
     progress.stage(format!("{} solves for {unknowns} unknowns", settings.name.as_str()));
-    let give_up = Arc::new(too_late(setup, d, folder, seconds));
+    let summary = |rejected: &Rejected| {
+        let tolerance = settings.tolerance.or_default();
+        Summary::new(&setup.case.title, d, tolerance, Err(rejected), seconds, None)
+    };
+    let give_up = Arc::new(too_late(setup, folder, summary));
     let of_run = Arc::clone(&give_up);
     clock.watch(watch, move || of_run());
     let mut solver = watch.over(solver(settings.name), move || give_up());
@@ -128,26 +124,6 @@ fn write_results(
     results.write(SUMMARY, |out| summary.write(out))?;
     results.publish()?;
     Ok(summary)
-}
-
-/// What to do when the solver, or the bound after it, does not come back in time.
-fn too_late(
-    setup: &Setup,
-    d: &Discretization,
-    folder: &Folder,
-    seconds: Seconds,
-) -> impl Fn() -> Failure + Send + Sync + 'static {
-    let settings = &setup.case.solver;
-    let statistics = Statistics {
-        solve_seconds: settings.time_limit.map_or(0.0, TimeLimit::seconds),
-        ..Statistics::of(settings.name.as_str(), Status::TimeLimit)
-    };
-    let rejected = Rejected::without_result(statistics);
-    let tolerance = settings.tolerance.or_default();
-    let summary = Summary::new(&setup.case.title, d, tolerance, Err(&rejected), seconds, None)
-        .with_unused_groups(&setup.groups);
-    let (name, folder) = (setup.name.clone(), folder.clone());
-    move || reject(&name, &folder, &summary, &rejected)
 }
 
 /// Arguments come before the case file.

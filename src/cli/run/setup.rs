@@ -252,8 +252,12 @@ fn cannot_read(case: &str, mesh: &Path, error: &ReadError) -> Failure {
     })
 }
 
-/// The solver of this name.
-pub(crate) fn solver(name: SolverName) -> Box<dyn ContactSolver> {
+/// A solver of the pair and of other stacks.
+trait AnySolver: ContactSolver + StackSolver {}
+
+impl<S: ContactSolver + StackSolver> AnySolver for S {}
+
+fn any_solver(name: SolverName) -> Box<dyn AnySolver> {
     match name {
         SolverName::ActiveSet => Box::new(ActiveSet),
         SolverName::Multigrid => Box::new(Multigrid),
@@ -267,26 +271,21 @@ pub(crate) fn solver(name: SolverName) -> Box<dyn ContactSolver> {
     }
 }
 
+/// The solver of this name.
+pub(crate) fn solver(name: SolverName) -> Box<dyn ContactSolver> {
+    any_solver(name)
+}
+
 /// The solver of this name for a stack; multigrid does not solve every one.
 pub(crate) fn stack_solver(
     name: SolverName,
     problem: &ContactProblem,
 ) -> Result<Box<dyn StackSolver>, SolverError> {
     let obstacles = [problem.ceiling(), problem.floor()].map(|obstacle| obstacle.is_some());
-    Ok(match name {
-        SolverName::ActiveSet => Box::new(ActiveSet),
-        SolverName::Multigrid if !Multigrid::solves_stack(problem.membranes().len(), obstacles) => {
-            return Err(SolverError::Coupled);
-        }
-        SolverName::Multigrid => Box::new(Multigrid),
-        SolverName::Auto => Box::new(Auto),
-        #[cfg(feature = "clarabel")]
-        SolverName::Clarabel => Box::new(QpSolver::new(crate::qp::Clarabel)),
-        #[cfg(feature = "osqp")]
-        SolverName::Osqp => Box::new(QpSolver::new(crate::qp::Osqp)),
-        #[allow(unreachable_patterns, reason = "with both features there is no other")]
-        _ => unreachable!("the name is refused where it is parsed"),
-    })
+    if name == SolverName::Multigrid && !Multigrid::solves_stack(problem.membranes().len(), obstacles) {
+        return Err(SolverError::Coupled);
+    }
+    Ok(any_solver(name))
 }
 
 /// What the settings ask of a solver.

@@ -71,9 +71,8 @@ impl MembraneData {
         })
     }
 
-    /// Every connected part of the mesh has a vertex where the membrane is fixed, or a foundation.
-    pub(super) fn check_support(&self, mesh: &Mesh, name: usize) -> Result<(), StackError> {
-        let parts = connected_parts(mesh);
+    /// Every one of the connected `parts` of the mesh has a vertex where the membrane is fixed, or a foundation.
+    pub(super) fn check_support(&self, mesh: &Mesh, parts: &[usize], name: usize) -> Result<(), StackError> {
         let holds =
             |a: usize| self.height[a].is_some() || self.foundation.as_ref().is_some_and(|c| c[a] > 0.0);
         let mut is_held = vec![false; mesh.points().len()];
@@ -87,7 +86,7 @@ impl MembraneData {
 }
 
 /// A vertex that stands for the connected part of the mesh in which each vertex lies.
-fn connected_parts(mesh: &Mesh) -> Vec<usize> {
+pub(super) fn connected_parts(mesh: &Mesh) -> Vec<usize> {
     let mut parent: Vec<usize> = (0..mesh.points().len()).collect();
     fn root(parent: &mut [usize], mut a: usize) -> usize {
         while parent[a] != a {

@@ -86,16 +86,11 @@ fn wrong(d: &StackDiscretization, active: &[bool], found: &Equilibrium, overlook
                 || gap > overlooked.max(f64::MIN_POSITIVE);
         }
         // What closing the gap would leave of the rows.
-        let free = [row.gap, row.gap + 1].into_iter().filter(|&i| match i {
-            0 => false,
-            _ if i > d.membranes() => false,
-            _ => d.unknown(i, row.vertex).is_some(),
-        });
         let is_beyond_rounding = |i: usize| {
             let [_, terms] = d.imbalance(i, row.vertex, &u[i - 1]);
             d.diagonal(i, row.vertex) * gap < -ROUNDING * terms
         };
-        gap < -overlooked && gap < 0.0 && free.into_iter().any(is_beyond_rounding)
+        gap < -overlooked && gap < 0.0 && row.free_layers().any(is_beyond_rounding)
     };
     (0..active.len()).filter(is_wrong).collect()
 }

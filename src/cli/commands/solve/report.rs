@@ -1,27 +1,8 @@
 //! What a solve says of itself, of a pair and of any other stack.
 
-use crate::action::Rejected;
-use crate::cli::failure::Failure;
-use crate::cli::run::files::{Part, SUMMARY};
-use crate::cli::run::folder::Folder;
 use crate::output::Summary;
 use crate::solver::PolishReport;
 use crate::text::grouped;
-
-/// What an interrupted run has to say.
-pub(super) const UNTOUCHED: &str = "nothing there was changed";
-
-/// Writes the summary of a run without a solution, and says why there is none. What an earlier run left is not the solution of
-/// this one, and goes.
-pub(super) fn reject(name: &str, folder: &Folder, summary: &Summary, rejected: &Rejected) -> Failure {
-    let mut results = folder.results(Part::Solution);
-    let written = results.write(SUMMARY, |out| summary.write(out)).and_then(|()| results.publish());
-    if let Err(failure) = written {
-        return failure;
-    }
-    let (status, remedy) = (rejected.statistics.status.as_str(), rejected.remedy());
-    Failure::NotCertified(format!("{name}: {rejected} (status {status}); {remedy}"))
-}
 
 /// What the mesh is.
 pub(super) fn mesh_line(summary: &Summary) -> String {

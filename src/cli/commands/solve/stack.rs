@@ -4,25 +4,25 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
-use super::report::{UNTOUCHED, certified_line, mesh_line, polish_line, reject, solver_line};
+use super::folder::{claim, reject, too_late};
+use super::report::{certified_line, mesh_line, polish_line, solver_line};
 use crate::action::{Rejected, StackSolution, certify_stack};
 use crate::cli::args::SolveArguments;
 use crate::cli::case::MeshSource;
-use crate::cli::commands::solution::{A_SOLUTION, left_out_line};
+use crate::cli::commands::solution::left_out_line;
 use crate::cli::failure::Failure;
 use crate::cli::run::clock::Clock;
 use crate::cli::run::files::{MEMBRANES, Part, SOLUTION, SUMMARY};
-use crate::cli::run::folder::{Claim, Folder};
+use crate::cli::run::folder::Folder;
 use crate::cli::run::pictures::Pictures;
 use crate::cli::run::progress::Progress;
-use crate::cli::run::setup::{Setup, options, stack_solver, too_early, unused_groups};
+use crate::cli::run::setup::{Setup, options, stack_solver, unused_groups};
 use crate::cli::run::watch::Watch;
 use crate::cli::terminal::{fields, fixed, print, wrapped};
 use crate::discretization::StackDiscretization;
 use crate::output::{ContactSummary, Seconds, Summary, write_stack_vtu};
 use crate::pictures::stack::{StackPicture, render};
-use crate::qp::{Status, TimeLimit};
-use crate::solver::{PolishReport, Statistics};
+use crate::solver::PolishReport;
 use crate::text::grouped;
 
 pub(super) fn run(
@@ -38,17 +38,9 @@ pub(super) fn run(
         return Err(Failure::Input(format!("{}: --dual is for a pair so far: leave it out", setup.name)));
     }
     let (d, seconds) = setup.discretize_stack(&progress)?;
-    clock.check(too_early(&arguments.case.path))?;
-    let claim = Claim {
-        case: &setup.id,
-        part: Part::Solution,
-        settings: A_SOLUTION.into(),
-        overwrite: arguments.output.overwrite,
-        says: UNTOUCHED,
-    };
-    let folder = Folder::claim(&arguments.output.folder(&arguments.case.path), &claim, watch)?;
+    let folder = claim(setup, arguments, clock, watch)?;
     progress.stage(format!("{} solves for {} unknowns", settings.name.as_str(), grouped(d.unknowns())));
-    let give_up = Arc::new(too_late(setup, &d, &folder, seconds));
+    let give_up = Arc::new(too_late(setup, &folder, |rejected| summary(setup, &d, Err(rejected), seconds)));
     let of_run = Arc::clone(&give_up);
     clock.watch(watch, move || of_run());
     let mut solver = watch.over_stack(solver, move || give_up());
@@ -80,24 +72,6 @@ fn summary(
 ) -> Summary {
     let tolerance = setup.case.solver.tolerance.or_default();
     Summary::of_stack(&setup.case.title, d, tolerance, result, seconds).with_unused_groups(&setup.groups)
-}
-
-/// What to do when the solver does not come back in time.
-fn too_late(
-    setup: &Setup,
-    d: &StackDiscretization,
-    folder: &Folder,
-    seconds: Seconds,
-) -> impl Fn() -> Failure + Send + Sync + 'static {
-    let settings = &setup.case.solver;
-    let statistics = Statistics {
-        solve_seconds: settings.time_limit.map_or(0.0, TimeLimit::seconds),
-        ..Statistics::of(settings.name.as_str(), Status::TimeLimit)
-    };
-    let rejected = Rejected::without_result(statistics);
-    let summary = summary(setup, d, Err(&rejected), seconds);
-    let (name, folder) = (setup.name.clone(), folder.clone());
-    move || reject(&name, &folder, &summary, &rejected)
 }
 
 fn write_results(
