@@ -12,7 +12,7 @@ mod stack;
 mod tests;
 
 pub use certificate::{Reason, Rejected, certify};
-pub(crate) use extension::extend_to_boundary;
+pub(crate) use extension::{extend_to_boundary, extend_to_held};
 pub use pairing::{equilibrium, is_in_cone, pairing, project, variation};
 pub use projection::CutOff;
 pub use recovery::Action;

@@ -18,8 +18,8 @@ use crate::text::Number;
 /// Tensions, displacements and loads must lie between the inverse of this and this: energies must not overflow.
 const LARGEST: f64 = 1e40;
 
-pub(crate) use stack::Segment;
 pub use stack::{Displacements, GapRow, IntegrationRule, StackDiscretization, StackError};
+pub(crate) use stack::{Samples, Segment, at_samples};
 
 /// `[u1, u2]`, each over vertices.
 pub type Displacement = [Vec<f64>; 2];

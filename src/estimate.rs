@@ -5,6 +5,7 @@ mod lift;
 mod norms;
 mod residual;
 mod spaces;
+mod stack;
 #[cfg(test)]
 mod tests;
 
@@ -12,6 +13,7 @@ pub use bound::{BoundParts, ErrorBound, ErrorBounds, LoadWarning};
 pub use lift::DualNorm;
 pub use norms::{ContactAreas, ErrorNorms, energy_error};
 pub use residual::residual_indicators;
+pub use stack::NoBound;
 
 use thiserror::Error;
 

@@ -18,6 +18,7 @@ mod defects;
 mod fan;
 mod field;
 mod reconstruct;
+mod sectors;
 #[cfg(test)]
 mod tests;
 mod wedges;
@@ -26,6 +27,8 @@ pub use defects::FluxDefects;
 pub use field::{Flux, FluxCells};
 pub use reconstruct::{Reconstructor, discrete_flux};
 
+pub(crate) use field::{constant_outward, inner_product, value};
+pub(crate) use sectors::{Balanced, MeetInAVertex, MembraneFlux};
 pub(crate) use wedges::WedgeFluxes;
 
 /// How the fluxes through the segments that leave a vertex are chosen.

@@ -1,33 +1,44 @@
 //! The action on the dual cells of the boundary, where `lambda_h` is zero and the exact action need not be.
 
 use crate::discretization::{Discretization, Displacement};
-use crate::mesh::VertexKind;
+use crate::mesh::{Mesh, VertexKind};
 
-/// Continues an action over vertices to the boundary, and tells where: `lambda_a` becomes the mean of the action at the
-/// neighbours, triangle by triangle, if the membranes touch in all triangles around the boundary vertex `a`.
-///
-/// Neighbours are those inside; in a corner whose triangle has none, those on the boundary that have got theirs.
-/// Where the membranes touch only on one side, or no neighbour knows an action, it stays zero. Linear time.
+/// Continues an action over vertices to the boundary, and tells where; see [`extend_to_held`].
 pub(crate) fn extend_to_boundary(
     d: &Discretization,
     [u1, u2]: &Displacement,
     lambda: &mut [f64],
 ) -> Vec<bool> {
-    let kind = d.mesh().kind();
-    let is_boundary = |a: usize| kind[a] == VertexKind::Boundary;
-    if (0..kind.len()).all(|a| !is_boundary(a) || u1[a] > u2[a]) {
-        return vec![false; kind.len()];
+    let is_boundary = |a: usize| d.mesh().kind()[a] == VertexKind::Boundary;
+    extend_to_held(d.mesh(), is_boundary, |a| u1[a] > u2[a], lambda)
+}
+
+/// Continues an action over vertices to those where both layers are held, and tells where: `lambda_a` becomes the mean of the
+/// action at the neighbours, triangle by triangle, if the layers touch in all triangles around such a vertex `a`.
+///
+/// Neighbours are those that are not held; in a corner whose triangle has none, those held that have got theirs.
+/// Where the layers touch only on one side, or no neighbour knows an action, it stays zero. Linear time.
+pub(crate) fn extend_to_held(
+    mesh: &Mesh,
+    is_held: impl Fn(usize) -> bool,
+    are_apart: impl Fn(usize) -> bool,
+    lambda: &mut [f64],
+) -> Vec<bool> {
+    let vertices = lambda.len();
+    if (0..vertices).all(|a| !is_held(a) || are_apart(a)) {
+        return vec![false; vertices];
     }
-    let at_boundary = |corners: &&[usize; 3]| corners.iter().any(|&a| is_boundary(a));
-    let mut triangles: Vec<[usize; 3]> = d.mesh().triangles().iter().filter(at_boundary).copied().collect();
-    let mut touches: Vec<bool> = kind.iter().map(|&kind| kind == VertexKind::Boundary).collect();
+    let at_held = |corners: &&[usize; 3]| corners.iter().any(|&a| is_held(a));
+    let mut triangles: Vec<[usize; 3]> = mesh.triangles().iter().filter(at_held).copied().collect();
+    let mut touches: Vec<bool> = (0..vertices).map(&is_held).collect();
     for corners in &triangles {
-        if corners.iter().any(|&a| u1[a] > u2[a]) {
+        if corners.iter().any(|&a| are_apart(a)) {
             corners.iter().for_each(|&a| touches[a] = false);
         }
     }
-    let mut known: Vec<bool> = kind.iter().map(|&kind| kind == VertexKind::Interior).collect();
-    let mut sums = vec![(0.0, 0usize); if triangles.is_empty() { 0 } else { kind.len() }];
+    let mut known: Vec<bool> =
+        (0..vertices).map(|a| mesh.kind()[a] != VertexKind::Unused && !is_held(a)).collect();
+    let mut sums = vec![(0.0, 0usize); if triangles.is_empty() { 0 } else { vertices }];
     loop {
         let is_open = |corners: &[usize; 3]| corners.iter().any(|&a| touches[a] && !known[a]);
         triangles.retain(is_open);
@@ -43,7 +54,7 @@ pub(crate) fn extend_to_boundary(
             }
         }
         if reached.is_empty() {
-            return (0..kind.len()).map(|a| touches[a] && is_boundary(a)).collect();
+            return (0..vertices).map(|a| touches[a] && is_held(a)).collect();
         }
         for a in reached {
             lambda[a] = sums[a].0 / sums[a].1 as f64;

@@ -1,6 +1,7 @@
 //! A stack of membranes between obstacles on a mesh: everything that its discrete problem is made of.
 
 mod chain;
+mod data;
 mod error;
 mod fields;
 mod membrane;
@@ -21,8 +22,10 @@ use crate::problem::{ContactProblem, Field};
 
 pub(crate) use chain::Segment;
 use chain::{Layer, segments};
+pub(crate) use data::Samples;
 pub use error::StackError;
 pub use fields::IntegrationRule;
+pub(crate) use fields::at_samples;
 use fields::{POSITIVE, borders, means};
 use membrane::{MembraneData, connected_parts};
 use obstacles::{check_order, obstacle};
@@ -49,9 +52,13 @@ pub type Displacements = Vec<Vec<f64>>;
 /// ```
 #[derive(Debug, Clone)]
 pub struct StackDiscretization {
+    problem: ContactProblem,
+    rule: IntegrationRule,
     mesh: Arc<Mesh>,
     membranes: Vec<MembraneData>,
-    /// The stiffness matrices of the tensions' profiles, on all vertices.
+    /// Tensions up to a factor, over triangles: membranes whose tensions are in proportion share one.
+    profiles: Vec<Vec<f64>>,
+    /// Their stiffness matrices, on all vertices.
     stiffness: Vec<CsMat<f64>>,
     /// Ceiling and floor over vertices.
     obstacles: [Option<Vec<f64>>; 2],
@@ -138,7 +145,10 @@ impl StackDiscretization {
         scales::check_range(&scales, &tensions)?;
         check_order(mesh, &membranes, &mut obstacles, scales.displacement)?;
         let mut stack = Self {
+            problem: problem.clone(),
+            rule,
             membranes,
+            profiles,
             stiffness,
             obstacles,
             obstacle_lines,
@@ -243,11 +253,14 @@ impl StackDiscretization {
     pub(crate) fn lines(&self, k: usize) -> Vec<[usize; 2]> {
         let last = self.membranes.len() + 1;
         let of_layer = |layer: usize| match layer {
-            0 => &self.obstacle_lines[0],
-            _ if layer == last => &self.obstacle_lines[1],
-            _ => &self.membranes[layer - 1].lines,
+            0 => [self.obstacle_lines[0].as_slice(), &[]],
+            _ if layer == last => [self.obstacle_lines[1].as_slice(), &[]],
+            _ => {
+                let MembraneData { held, tension_borders, .. } = &self.membranes[layer - 1];
+                [held.free_edges.as_slice(), tension_borders]
+            }
         };
-        let mut lines = [of_layer(k).as_slice(), of_layer(k + 1)].concat();
+        let mut lines = [of_layer(k), of_layer(k + 1)].concat().concat();
         lines.sort_unstable();
         lines.dedup();
         lines
@@ -265,7 +278,7 @@ impl StackDiscretization {
 
     /// The height at which membrane `i` (from 1) is fixed at a vertex.
     pub(crate) fn height(&self, i: usize, a: usize) -> Option<f64> {
-        self.membranes[i - 1].height[a]
+        self.membranes[i - 1].held.height[a]
     }
 
     /// Layer `layer` at vertex `a`.
@@ -276,7 +289,7 @@ impl StackDiscretization {
             return obstacle.as_ref().map_or(Layer::Absent, |heights| Layer::Known(heights[a]));
         }
         let membrane = &self.membranes[layer - 1];
-        match (membrane.number[a], membrane.height[a]) {
+        match (membrane.number[a], membrane.held.height[a]) {
             (Some(number), _) => Layer::Unknown(number as usize),
             (None, Some(height)) => Layer::Known(height),
             (None, None) => Layer::Absent,
@@ -359,7 +372,7 @@ impl StackDiscretization {
                 Some(number) => x[*number as usize],
                 None => height.unwrap_or(0.0),
             };
-            membrane.number.iter().zip(&membrane.height).map(value).collect()
+            membrane.number.iter().zip(&membrane.held.height).map(value).collect()
         };
         self.membranes.iter().map(extended).collect()
     }

@@ -47,16 +47,16 @@ pub struct ErrorBound {
     pub energy_norm: f64,
     /// Where it comes from.
     pub parts: BoundParts,
-    /// The action `lt` of the bound, on the dual cells: `lambda_h` where the membranes touch, and on the cells of the boundary, where
-    /// `lambda_h` is zero, that of the neighbours if they touch all around: `total_force_extended` is its integral. Shape:
-    /// `vertices`; unit: force per area.
-    pub action: Vec<f64>,
+    /// The actions `lt` of the bound, one for each gap from the top, on the dual cells: `lambda_h` where the layers touch, less what acts
+    /// along lines; and on the cells where both are held, where `lambda_h` is zero, that of the neighbours if they touch all around: for
+    /// a pair, `total_force_extended` is its integral. Shape: `gaps x vertices`; unit: force per area.
+    pub actions: Vec<Vec<f64>>,
     /// The squared indicators `sum_i (a_{K,i} + b_{K,i})^2 + 2 a_{K,i} b_{K,i} + 2 (lt, w^)_K`: with `alpha_i = 0`, their sum is the
     /// square of the bound. Shape: `triangles`.
     pub indicators: Vec<f64>,
     /// By how much the bound would grow at most, about, by what a second quadrature rule finds of each load; see
     /// [`Discretization::quadrature_difference`]. Unit: square root of an energy.
-    pub quadrature_difference: [f64; 2],
+    pub quadrature_difference: Vec<f64>,
     /// The loads of which the quadrature may know too little for the bound to hold.
     pub warnings: Vec<LoadWarning>,
 }
@@ -72,7 +72,8 @@ pub struct BoundParts {
     pub oscillation: f64,
     /// `(2 (lambda_h, w_h))^(1/2)` from triangles that are partly in contact.
     pub contact: f64,
-    /// From `g - g_h`, and from what lies between a circle and the polygon of the mesh.
+    /// From `g - g_h`, and from what lies between a circle and the polygon of the mesh; of a stack, from obstacles between the
+    /// vertices.
     pub boundary: f64,
     /// What the solver left: solving more tightly makes this part smaller and no other.
     pub algebraic: f64,
@@ -122,7 +123,7 @@ impl ErrorBound {
         let total = (of_membrane(0) + of_membrane(1) + 2.0 * others).sqrt();
         Self {
             total,
-            quadrature_difference: d.quadrature_difference(),
+            quadrature_difference: d.quadrature_difference().to_vec(),
             warnings: LoadWarning::all(d, total),
             energy_norm: sums.energy_sq.sqrt(),
             parts: BoundParts {
@@ -132,7 +133,7 @@ impl ErrorBound {
                 boundary: sums.boundary_sq.sqrt(),
                 algebraic: rest[0].hypot(rest[1]) + (2.0 * sums.overlap).sqrt() + sums.feasible_sq.sqrt(),
             },
-            action,
+            actions: vec![action],
             indicators,
         }
     }

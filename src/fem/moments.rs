@@ -51,15 +51,24 @@ impl LoadMoments {
         let second_rule = SecondRule::new(areas.iter().sum());
         // Collected before errors are looked for, so that the first in the order of the triangles is named.
         let blocks: Vec<_> = blocks().map(|block| on_block(mesh, block, f, &second_rule)).collect();
-        let (mut moments, mut means) = (Vec::with_capacity(triangles), Vec::with_capacity(triangles));
-        let mut excess_sq = 0.0;
-        for block in blocks {
-            let block = block?;
-            moments.extend(block.moments);
-            means.extend(block.means);
-            excess_sq += block.excess_sq;
+        let mut seen = SeenLoad::with_capacity(triangles);
+        blocks.into_iter().try_for_each(|block| block.map(|block| seen.extend(block)))?;
+        Ok(seen.into_moments(mesh))
+    }
+
+    /// Of a load that is given by parts: the triangles of each, and what is seen of it there. Together they are all triangles.
+    pub(crate) fn of_parts(mesh: &Mesh, parts: impl IntoIterator<Item = (Vec<usize>, SeenLoad)>) -> Self {
+        let nothing = ElementMoments { integrals: [0.0; 3], deviation: 0.0 };
+        let triangles = mesh.triangles().len();
+        let mut all =
+            SeenLoad { moments: vec![nothing; triangles], means: vec![0.0; triangles], excess_sq: 0.0 };
+        for (triangles, part) in parts {
+            for ((t, moments), mean) in triangles.into_iter().zip(part.moments).zip(part.means) {
+                (all.moments[t], all.means[t]) = (moments, mean);
+            }
+            all.excess_sq += part.excess_sq;
         }
-        Ok(Self::Varying { moments, difference: excess_sq.sqrt() + dual_norm(mesh, &means) })
+        all.into_moments(mesh)
     }
 
     /// What a second quadrature rule, at other points, finds of the load `f` beyond the affine functions `p` that stand for it, in the
@@ -190,33 +199,54 @@ impl<'a> Samples<'a> {
     }
 }
 
-/// What is found on a block of triangles.
-#[derive(Default)]
-struct Block {
-    moments: Vec<ElementMoments>,
+/// What the two rules find of a load on some triangles.
+pub(crate) struct SeenLoad {
+    pub(crate) moments: Vec<ElementMoments>,
     /// What the second rule finds: the means of `f - p`, and the sum of `(h_K / pi)^2` times the rest.
     means: Vec<f64>,
     excess_sq: f64,
 }
 
-/// `int_K f phi_i` for the three corners of the given triangles, by the quadrature of [`load`](super::load()); `f` is not
-/// evaluated anywhere else.
+impl SeenLoad {
+    fn with_capacity(triangles: usize) -> Self {
+        Self { moments: Vec::with_capacity(triangles), means: Vec::with_capacity(triangles), excess_sq: 0.0 }
+    }
+
+    /// Of a load that is affine on each triangle and has these integrals against the hat functions.
+    pub(crate) fn affine(integrals: impl IntoIterator<Item = [f64; 3]>) -> Self {
+        let moments: Vec<_> =
+            integrals.into_iter().map(|integrals| ElementMoments { integrals, deviation: 0.0 }).collect();
+        Self { means: vec![0.0; moments.len()], moments, excess_sq: 0.0 }
+    }
+
+    fn extend(&mut self, further: Self) {
+        self.moments.extend(further.moments);
+        self.means.extend(further.means);
+        self.excess_sq += further.excess_sq;
+    }
+
+    /// Of all triangles.
+    fn into_moments(self, mesh: &Mesh) -> LoadMoments {
+        let difference = self.excess_sq.sqrt() + dual_norm(mesh, &self.means);
+        LoadMoments::Varying { moments: self.moments, difference }
+    }
+}
+
+/// The moments on the given triangles; `f` is not evaluated anywhere else.
 ///
 /// # Errors
 /// As [`load`](super::load()).
-pub(crate) fn integrals_on(
+pub(crate) fn moments_on(
     mesh: &Mesh,
     triangles: &[usize],
     f: &Function,
-) -> Result<Vec<[f64; 3]>, EvaluationError> {
+) -> Result<SeenLoad, EvaluationError> {
     let second_rule = SecondRule::new(triangles.iter().map(|&t| mesh.triangle_area(t)).sum());
     let of_block = |block: Range<usize>| on_block(mesh, triangles[block].iter().copied(), f, &second_rule);
     let blocks: Vec<_> = blocks_of(BATCH, triangles.len()).into_par_iter().map(of_block).collect();
-    let mut integrals = Vec::with_capacity(triangles.len());
-    for block in blocks {
-        integrals.extend(block?.moments.into_iter().map(|moments| moments.integrals));
-    }
-    Ok(integrals)
+    let mut seen = SeenLoad::with_capacity(triangles.len());
+    blocks.into_iter().try_for_each(|block| block.map(|block| seen.extend(block)))?;
+    Ok(seen)
 }
 
 /// The moments on one block of triangles.
@@ -225,7 +255,7 @@ fn on_block(
     triangles: impl Iterator<Item = usize> + Clone,
     f: &Function,
     second_rule: &SecondRule,
-) -> Result<Block, EvaluationError> {
+) -> Result<SeenLoad, EvaluationError> {
     let (mut first, mut second) = (Values::default(), Values::default());
     for t in triangles.clone() {
         first.add_points(mesh.corners(t), DEGREE_4.points);
@@ -249,7 +279,7 @@ fn on_block(
         let moments = ElementMoments::new(area, &along_jumps.of(corners, f, &cut)?);
         Ok((moments, moments.beyond(area, &along_jumps.of(corners, f, &shallower)?)))
     };
-    let mut found = Block::default();
+    let mut found = SeenLoad::with_capacity(BATCH);
     for t in triangles {
         let (moments, Beyond { mean, excess_sq }) = on_triangle(t)?;
         found.moments.push(moments);

@@ -82,7 +82,7 @@ impl<'s> Flux<'s> {
 }
 
 /// `sum_j F_j (x - p_j) / (2 |T|)`, the field on a triangle `T` of corners `p_j` whose outward fluxes are `F_j`.
-fn value(corners: [[f64; 2]; 3], outward: [f64; 3], point: [f64; 2]) -> [f64; 2] {
+pub(crate) fn value(corners: [[f64; 2]; 3], outward: [f64; 3], point: [f64; 2]) -> [f64; 2] {
     let scale = 1.0 / twice_signed_area(corners);
     [0, 1].map(|axis| scale * (0..3).map(|j| outward[j] * (point[axis] - corners[j][axis])).sum::<f64>())
 }
@@ -93,12 +93,12 @@ pub(super) fn through(q: [f64; 2], from: [f64; 2], to: [f64; 2]) -> f64 {
 }
 
 /// The outward fluxes of the constant field `q`.
-pub(super) fn constant_outward(corners: [[f64; 2]; 3], q: [f64; 2]) -> [f64; 3] {
+pub(crate) fn constant_outward(corners: [[f64; 2]; 3], q: [f64; 2]) -> [f64; 3] {
     [0, 1, 2].map(|j| through(q, corners[(j + 1) % 3], corners[(j + 2) % 3]))
 }
 
 /// `int_T s . t` for the fields on a triangle `T` with the outward fluxes `s` and `t`.
-pub(super) fn inner_product(corners: [[f64; 2]; 3], s: [f64; 3], t: [f64; 3]) -> f64 {
+pub(crate) fn inner_product(corners: [[f64; 2]; 3], s: [f64; 3], t: [f64; 3]) -> f64 {
     // The rule of the midpoints is exact for quadratic functions.
     let at_midpoint = |j: usize| {
         let [p, q] = [corners[(j + 1) % 3], corners[(j + 2) % 3]];

@@ -3,4 +3,5 @@ mod identities;
 mod lemma_17;
 mod properties;
 mod samples;
+mod sectors;
 mod wedges;

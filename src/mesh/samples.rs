@@ -58,6 +58,15 @@ pub(crate) fn assorted() -> Vec<Mesh> {
     ]
 }
 
+/// A mesh of the unit square with the region `patch` and the sides `west`, `north` and `east`.
+pub(crate) fn with_sides_and_patch(mesh: Mesh) -> Mesh {
+    let on = |distance: f64| distance.abs() < 1e-9;
+    let mesh = mesh.with_region("patch", |[x, y]| x + 0.5 * y < 0.6).unwrap();
+    let mesh = mesh.with_curve("west", |[x, _]| on(x)).unwrap();
+    let mesh = mesh.with_curve("north", |[_, y]| on(1.0 - y)).unwrap();
+    mesh.with_curve("east", |[x, _]| on(1.0 - x)).unwrap()
+}
+
 /// How far the vertices are from the means of their parents, where the coarsest vertices lie as in `coarsest`.
 pub(crate) fn ancestry_defect(mesh: &Mesh, coarsest: &[[f64; 2]]) -> f64 {
     let prolong = |points: &[[f64; 2]], parents: &Parents| -> Vec<[f64; 2]> {

@@ -88,7 +88,7 @@ pub struct Summary {
     pub error_parts: Option<BoundParts>,
     /// By how much two quadrature rules differ in each load, in the same norm as the bound: zero for constant loads, and where it is
     /// above the bound, that does not hold; absent when not certified.
-    pub quadrature_difference: Option<[f64; 2]>,
+    pub quadrature_difference: Option<Vec<f64>>,
     /// What makes the bound doubtful, in a sentence each.
     pub warnings: Vec<String>,
     /// The energy norm of the solution; absent when not certified.
@@ -203,7 +203,7 @@ impl Summary {
             error_bound: bound.map(|bound| bound.total),
             relative_error_bound: bound.and_then(ErrorBound::relative),
             error_parts: bound.map(|bound| bound.parts),
-            quadrature_difference: bound.map(|bound| bound.quadrature_difference),
+            quadrature_difference: bound.map(|bound| bound.quadrature_difference.clone()),
             warnings: warnings(bound),
             energy_norm: bound.map(|bound| bound.energy_norm),
             ..Self::of_run(title, d.mesh(), tolerance, statistics, residuals, seconds)

@@ -81,7 +81,7 @@ mod tests {
                     assert_eq!(gap[a], u1[a] - u2[a]);
                     assert_eq!(touches, inside && gap[a] == 0.0, "{} {a}", solver.name());
                     assert!(lambda[a] >= 0.0 && lambda[a] * gap[a] == 0.0, "{} {a}", solver.name());
-                    assert_eq!(bound.action[a], lambda[a], "there is a gap all around the boundary");
+                    assert_eq!(bound.actions[0][a], lambda[a], "there is a gap all around the boundary");
                 }
                 let count = |is: &dyn Fn(usize) -> bool| Some((0..flags.len()).filter(|&a| is(a)).count());
                 assert_eq!(summary.contact_vertices, count(&|a| flags[a]));

@@ -62,6 +62,19 @@ impl Field {
         }
     }
 
+    /// Whether it has one value on each triangle of a mesh that has its regions.
+    pub(crate) fn is_constant_on_triangles(&self) -> bool {
+        match self {
+            Self::Everywhere(function) => matches!(function, Function::Constant(_)),
+            Self::PerVertex(_) => false,
+            Self::PerTriangle(_) => true,
+            Self::ByRegion { parts, elsewhere } => {
+                let mut fields = parts.iter().map(|(_, field)| field).chain(elsewhere.as_deref());
+                fields.all(Self::is_constant_on_triangles)
+            }
+        }
+    }
+
     /// The function, where one serves everywhere.
     pub(super) fn function(&self) -> Option<&Function> {
         match self {

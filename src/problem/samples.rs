@@ -1,5 +1,7 @@
 //! Problems drawn at random, for the tests of all rooms.
 
+pub(crate) mod stack;
+
 use proptest::prelude::*;
 
 use super::{ContactProblem, Function};

@@ -187,7 +187,7 @@ impl AdaptiveStudy {
     ) -> Result<AdaptiveLevel, StudyError> {
         let Bounded { solution, bound, tolerance, bound_seconds } = bounded;
         let displacement = solution.displacement();
-        let residuals = residual_indicators(d, displacement, &bound.action)?;
+        let residuals = residual_indicators(d, displacement, &bound.actions[0])?;
         let error = self.exact.as_ref().map(|exact| energy_error(d, displacement, exact)).transpose()?;
         let quality = d.mesh().quality();
         let parts = bound.parts;

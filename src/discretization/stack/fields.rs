@@ -1,8 +1,10 @@
 //! Data over the domain on a mesh: integrals against hat functions, means on triangles, values at vertices.
 
 use super::error::{StackError, known};
-use crate::fem::integrals_on;
+use crate::fem::{LoadMoments, SeenLoad, moments_on};
 use crate::mesh::{HalfEdge, HalfEdges, Mesh, VertexKind};
+use crate::parallel::BLOCK;
+use crate::parallel::prelude::*;
 use crate::problem::{Field, Function};
 
 /// How data are integrated over a triangle.
@@ -109,8 +111,8 @@ fn check_length(datum: &str, found: usize, expected: usize, of: &'static str) ->
 enum OnTriangles {
     /// One value each.
     Values(Vec<f64>),
-    /// `int_K f phi_i` for the three corners of each.
-    Integrals(Vec<[f64; 3]>),
+    /// What the quadrature sees.
+    Seen(SeenLoad),
 }
 
 impl Piece<'_> {
@@ -131,9 +133,9 @@ impl Piece<'_> {
                 OnTriangles::Values(triangles.iter().map(|&t| values[t]).collect())
             }
             (Field::Everywhere(function), IntegrationRule::Quadrature) => {
-                let integrals = integrals_on(mesh, triangles, function);
-                OnTriangles::Integrals(
-                    integrals.map_err(|source| StackError::Evaluation { datum: datum.into(), source })?,
+                let seen = moments_on(mesh, triangles, function);
+                OnTriangles::Seen(
+                    seen.map_err(|source| StackError::Evaluation { datum: datum.into(), source })?,
                 )
             }
             (Field::PerVertex(_), IntegrationRule::Quadrature) => {
@@ -142,12 +144,12 @@ impl Piece<'_> {
                     let sum = at.iter().sum::<f64>();
                     at.map(|value| third(t) * 0.25 * (value + sum))
                 };
-                OnTriangles::Integrals(triangles.iter().zip(corners).map(integrals).collect())
+                OnTriangles::Seen(SeenLoad::affine(triangles.iter().zip(corners).map(integrals)))
             }
             (_, IntegrationRule::Vertices) => {
                 let corners = self.at_corners(mesh, datum)?;
                 let integrals = |(&t, at): (&usize, [f64; 3])| at.map(|value| third(t) * value);
-                OnTriangles::Integrals(triangles.iter().zip(corners).map(integrals).collect())
+                OnTriangles::Seen(SeenLoad::affine(triangles.iter().zip(corners).map(integrals)))
             }
             (Field::ByRegion { .. }, _) => unreachable!("pieces know no regions"),
         })
@@ -165,28 +167,32 @@ impl Piece<'_> {
     }
 }
 
-/// `int_K f phi_i` for the three corners of each triangle `K`. Shape: `triangles x 3`.
-pub(super) fn integrals(
+/// The moments of a load.
+pub(super) fn moments(
     mesh: &Mesh,
     field: &Field,
     datum: &str,
     rule: IntegrationRule,
-) -> Result<Vec<[f64; 3]>, StackError> {
-    let mut integrals = vec![[0.0; 3]; mesh.triangles().len()];
-    for piece in pieces(mesh, field, datum)? {
-        match piece.on_triangles(mesh, datum, rule)? {
-            // As the constant load of the paper's pair, to the last bit.
-            OnTriangles::Values(values) => {
-                for (&t, value) in piece.triangles.iter().zip(values) {
-                    integrals[t] = [value * mesh.triangle_area(t) / 3.0; 3];
-                }
-            }
-            OnTriangles::Integrals(found) => {
-                piece.triangles.iter().zip(found).for_each(|(&t, found)| integrals[t] = found);
-            }
-        }
+) -> Result<LoadMoments, StackError> {
+    if let Some(value) = field.constant() {
+        return Ok(LoadMoments::Constant(value));
     }
-    Ok(integrals)
+    let mut parts = Vec::new();
+    for piece in pieces(mesh, field, datum)? {
+        let seen = match piece.on_triangles(mesh, datum, rule)? {
+            OnTriangles::Seen(seen) => seen,
+            // As the constant load of the paper's pair, to the last bit.
+            OnTriangles::Values(values) => SeenLoad::affine(
+                piece
+                    .triangles
+                    .iter()
+                    .zip(values)
+                    .map(|(&t, value)| [value * mesh.triangle_area(t) / 3.0; 3]),
+            ),
+        };
+        parts.push((piece.triangles, seen));
+    }
+    Ok(LoadMoments::of_parts(mesh, parts))
 }
 
 /// The means on the triangles, of what `is_allowed`; a number is itself. Shape: `triangles`.
@@ -203,9 +209,9 @@ pub(super) fn means(
             OnTriangles::Values(values) => {
                 piece.triangles.iter().zip(values).for_each(|(&t, value)| means[t] = value);
             }
-            OnTriangles::Integrals(found) => {
-                for (&t, integrals) in piece.triangles.iter().zip(found) {
-                    means[t] = integrals.iter().sum::<f64>() / mesh.triangle_area(t);
+            OnTriangles::Seen(seen) => {
+                for (&t, moments) in piece.triangles.iter().zip(seen.moments) {
+                    means[t] = moments.integrals.iter().sum::<f64>() / mesh.triangle_area(t);
                 }
             }
         }
@@ -219,6 +225,48 @@ pub(super) fn means(
         }
     }
     Ok(means)
+}
+
+/// Where data are sampled on a triangle to bound errors: the corners, the midpoints of the edges from each corner to the next, the
+/// barycentre. Barycentric coordinates.
+const SAMPLES: [[f64; 3]; 7] = [
+    [1.0, 0.0, 0.0],
+    [0.0, 1.0, 0.0],
+    [0.0, 0.0, 1.0],
+    [0.5, 0.5, 0.0],
+    [0.0, 0.5, 0.5],
+    [0.5, 0.0, 0.5],
+    [1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0],
+];
+
+/// An affine function at the points, from its values at the corners.
+pub(crate) fn at_samples(corners: [f64; 3]) -> [f64; 7] {
+    SAMPLES.map(|point| (0..3).map(|j| point[j] * corners[j]).sum::<f64>())
+}
+
+/// A field at the corners of each triangle, the midpoints of its edges (from each corner to the next) and its barycentre, as the
+/// triangle itself sees it. Shape: `triangles x 7`.
+pub(super) fn samples(mesh: &Mesh, field: &Field, datum: &str) -> Result<Vec<[f64; 7]>, StackError> {
+    let mut samples = vec![[0.0; 7]; mesh.triangles().len()];
+    for Piece { field, triangles } in pieces(mesh, field, datum)? {
+        let of_triangle = |t: usize| match field {
+            Field::PerTriangle(values) => Ok([values[t]; 7]),
+            Field::PerVertex(values) => Ok(at_samples(mesh.triangles()[t].map(|a| values[a]))),
+            Field::Everywhere(function) => {
+                let corners = mesh.corners(t);
+                let [x, y] = [0, 1].map(|axis| at_samples(corners.map(|corner| corner[axis])));
+                let mut values = [0.0; 7];
+                let evaluated = function.eval_many(&x, &y, &mut values).map(|()| values);
+                evaluated.map_err(|source| StackError::Evaluation { datum: datum.into(), source })
+            }
+            Field::ByRegion { .. } => unreachable!("pieces know no regions"),
+        };
+        let found: Vec<_> = triangles.par_iter().with_min_len(BLOCK).map(|&t| of_triangle(t)).collect();
+        for (t, found) in triangles.into_iter().zip(found) {
+            samples[t] = found?;
+        }
+    }
+    Ok(samples)
 }
 
 /// The values at the given vertices; where regions meet that have values of their own, the `stricter` of them.

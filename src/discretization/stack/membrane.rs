@@ -1,9 +1,10 @@
 //! One membrane of a stack on a mesh.
 
 use super::error::StackError;
-use super::fields::{IntegrationRule, NOT_NEGATIVE, borders, integrals, means};
+use super::fields::{IntegrationRule, NOT_NEGATIVE, borders, means, moments};
 use super::supports::Held;
-use crate::mesh::{Mesh, VertexKind, VertexTriangles, corner_of};
+use crate::fem::LoadMoments;
+use crate::mesh::{Mesh, VertexKind, VertexTriangles};
 use crate::parallel::prelude::*;
 use crate::problem::Membrane;
 
@@ -13,19 +14,21 @@ pub(crate) struct MembraneData {
     /// `K_i = factor * stiffness[profile] + diag(foundation)`.
     pub(super) factor: f64,
     pub(super) profile: usize,
+    /// Over vertices.
     pub(super) foundation: Option<Vec<f64>>,
+    /// The means `c_K`, over triangles.
+    pub(super) foundation_means: Option<Vec<f64>>,
+    pub(super) moments: LoadMoments,
     /// `F_i` over vertices, line loads included. Unit: force.
     pub(super) load: Vec<f64>,
-    /// The height at vertices where it is fixed.
-    pub(super) height: Vec<Option<f64>>,
+    pub(super) held: Held,
     /// The number of the unknown at each vertex, where there is one.
     pub(super) number: Vec<Option<u32>>,
     /// The vertices with an unknown, in increasing order; they are numbered from `first`.
     pub(super) vertices: Vec<usize>,
     pub(super) first: usize,
-    /// Edges along which it may push or be pushed by a force along a line: where it is free, and where its tension jumps from one
-    /// region to another.
-    pub(super) lines: Vec<[usize; 2]>,
+    /// The edges where its tension jumps from one region to another.
+    pub(super) tension_borders: Vec<[usize; 2]>,
 }
 
 impl MembraneData {
@@ -43,38 +46,40 @@ impl MembraneData {
             Some(0.0) => None,
             _ => Some(means(mesh, &membrane.foundation, &format!("foundation c{name}"), rule, NOT_NEGATIVE)?),
         };
-        let over_vertices = |term: &(dyn Fn(usize, usize) -> f64 + Sync)| -> Vec<f64> {
-            let at = |a: usize| around.of(a).iter().map(|&t| term(t, a)).sum();
+        let over_vertices = |term: &(dyn Fn(usize) -> f64 + Sync)| -> Vec<f64> {
+            let at = |a: usize| around.of(a).iter().map(|&t| term(t)).sum();
             (0..mesh.points().len()).into_par_iter().map(at).collect()
         };
-        let integrals = integrals(mesh, &membrane.load, &format!("load f{name}"), rule)?;
-        let mut load = over_vertices(&|t, a| integrals[t][corner_of(mesh.triangles()[t], a)]);
-        load.iter_mut().zip(&held.line_load).for_each(|(load, line)| *load += line);
+        let moments = moments(mesh, &membrane.load, &format!("load f{name}"), rule)?;
+        let mut load = moments.vector(mesh, around);
+        for line in &held.line_loads {
+            line.ends.iter().zip(line.force).for_each(|(&a, force)| load[a] += force);
+        }
         let is_free = |a: &usize| mesh.kind()[*a] != VertexKind::Unused && held.height[*a].is_none();
         let vertices: Vec<usize> = (0..mesh.points().len()).filter(is_free).collect();
         let mut number = vec![None; mesh.points().len()];
         for (k, &a) in vertices.iter().enumerate() {
             number[a] = Some(u32::try_from(first + k).expect("fewer than 2^32 unknowns"));
         }
-        let mut lines = held.free_edges;
-        lines.extend(borders(mesh, &membrane.tension, &format!("tension mu{name}"))?);
         Ok(Self {
             factor,
             profile,
-            foundation: foundation.map(|c| over_vertices(&|t, _| c[t] * mesh.triangle_area(t) / 3.0)),
+            foundation: foundation.as_ref().map(|c| over_vertices(&|t| c[t] * mesh.triangle_area(t) / 3.0)),
+            foundation_means: foundation,
+            moments,
             load,
-            height: held.height,
+            held,
             number,
             vertices,
             first,
-            lines,
+            tension_borders: borders(mesh, &membrane.tension, &format!("tension mu{name}"))?,
         })
     }
 
     /// Every one of the connected `parts` of the mesh has a vertex where the membrane is fixed, or a foundation.
     pub(super) fn check_support(&self, mesh: &Mesh, parts: &[usize], name: usize) -> Result<(), StackError> {
         let holds =
-            |a: usize| self.height[a].is_some() || self.foundation.as_ref().is_some_and(|c| c[a] > 0.0);
+            |a: usize| self.held.height[a].is_some() || self.foundation.as_ref().is_some_and(|c| c[a] > 0.0);
         let mut is_held = vec![false; mesh.points().len()];
         (0..parts.len()).filter(|&a| holds(a)).for_each(|a| is_held[parts[a]] = true);
         let loose = (0..parts.len()).find(|&a| mesh.kind()[a] != VertexKind::Unused && !is_held[parts[a]]);

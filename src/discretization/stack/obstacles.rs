@@ -42,7 +42,7 @@ pub(super) fn check_order(
     };
     for a in (0..mesh.points().len()).filter(|&a| mesh.kind()[a] != VertexKind::Unused) {
         let fixed =
-            membranes.iter().enumerate().filter_map(|(k, membrane)| Some((k + 1, membrane.height[a]?)));
+            membranes.iter().enumerate().filter_map(|(k, membrane)| Some((k + 1, membrane.held.height[a]?)));
         let mut known: Vec<(usize, f64)> = fixed.collect();
         if let (Some(ceiling), Some(&(_, height))) = (&mut obstacles[0], known.first())
             && (0.0..=ROUNDED_OBSTACLE * size).contains(&(height - ceiling[a]))

@@ -25,7 +25,7 @@ pub(super) fn scales(
         deflection_of(mesh, membrane, tension, dual_area, density(&membrane.load))
     });
     let deflection = largest(deflections);
-    let heights = membranes.iter().flat_map(|membrane| membrane.height.iter().flatten());
+    let heights = membranes.iter().flat_map(|membrane| membrane.held.height.iter().flatten());
     let held = largest(heights.map(|height| height.abs()));
     let obstacles = within_reach(obstacles, &used, held, deflection);
 
@@ -34,7 +34,7 @@ pub(super) fn scales(
     let bent_by_obstacles = largest(obstacles.iter().map(|heights| range(heights.iter().copied())));
     let force = |(membrane, tension): (&MembraneData, &Vec<f64>)| {
         let most = tension.iter().copied().fold(0.0, f64::max);
-        let bent = range(membrane.height.iter().flatten().copied()).max(bent_by_obstacles);
+        let bent = range(membrane.held.height.iter().flatten().copied()).max(bent_by_obstacles);
         density(&membrane.load).max(most * bent / (width * width / 8.0))
     };
     // Without any load, and at a constant height, everything is at rest: any scale serves.
@@ -62,7 +62,7 @@ fn deflection_of(
     }
     let least = tension.iter().copied().fold(f64::INFINITY, f64::min);
     let of_strip = |distance: f64| density / least * (0.5 * distance * distance);
-    let is_fixed = |a: usize| membrane.height[a].is_some();
+    let is_fixed = |a: usize| membrane.held.height[a].is_some();
     let all_around = (0..dual_area.len()).all(|a| mesh.kind()[a] != VertexKind::Boundary || is_fixed(a));
     let (lower, upper) = mesh.bounding_box();
     let width = (upper[0] - lower[0]).min(upper[1] - lower[1]);

@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-use crate::discretization::Discretization;
+use crate::discretization::{Discretization, StackDiscretization};
+use crate::fem::LoadMoments;
 
 /// Why the bound may not hold: the quadrature has not seen enough of a load.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -10,7 +11,7 @@ use crate::discretization::Discretization;
 pub enum LoadWarning {
     /// Two quadrature rules find loads that differ by more than the bound.
     Unresolved {
-        /// 1 or 2.
+        /// From 1.
         membrane: usize,
         /// By how much, in the energy norm.
         difference: f64,
@@ -19,7 +20,7 @@ pub enum LoadWarning {
     },
     /// A load that is no constant is zero wherever the quadrature looks.
     Vanishing {
-        /// 1 or 2.
+        /// From 1.
         membrane: usize,
     },
 }
@@ -27,16 +28,22 @@ pub enum LoadWarning {
 impl LoadWarning {
     /// Those of both loads of `d`, beside a bound of the energy error on its mesh.
     pub(crate) fn all(d: &Discretization, bound: f64) -> Vec<Self> {
-        let difference = d.quadrature_difference();
-        let of = |i: usize| {
-            let membrane = i + 1;
-            if difference[i] > bound {
-                Some(Self::Unresolved { membrane, difference: difference[i], bound })
-            } else {
-                d.moments[i].sees_nothing().then_some(Self::Vanishing { membrane })
-            }
-        };
-        (0..2).filter_map(of).collect()
+        let loads = d.moments.iter().zip(d.quadrature_difference());
+        (1..).zip(loads).filter_map(|(i, (load, difference))| Self::of(i, load, difference, bound)).collect()
+    }
+
+    /// Those of all loads of a stack.
+    pub(crate) fn of_stack(d: &StackDiscretization, bound: f64) -> Vec<Self> {
+        let of = |(i, difference)| Self::of(i, d.moments(i), difference, bound);
+        (1..).zip(d.quadrature_difference()).filter_map(of).collect()
+    }
+
+    fn of(membrane: usize, load: &LoadMoments, difference: f64, bound: f64) -> Option<Self> {
+        if difference > bound {
+            Some(Self::Unresolved { membrane, difference, bound })
+        } else {
+            load.sees_nothing().then_some(Self::Vanishing { membrane })
+        }
     }
 }
 

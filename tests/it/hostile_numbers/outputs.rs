@@ -76,7 +76,7 @@ fn not_finite(Bounded { solution, bound, .. }: &Bounded) -> Vec<String> {
         ("gap", &gap),
         ("lambda", solution.lambda()),
         ("error_indicator", &roots),
-        ("action of the bound", &bound.action),
+        ("action of the bound", &bound.actions[0]),
     ];
     let bad = arrays.into_iter().filter(|(_, values)| !values.iter().all(|value| value.is_finite()));
     bad.map(|(name, _)| format!("{name} is not finite somewhere")).collect()

@@ -223,7 +223,7 @@ fn of_solutions_that_were_projected() {
             };
             let lost = friedrichs([1.0, 1.0]) * (lost_sq(0) + lost_sq(1)).sqrt();
             assert!((found.parts.algebraic - lost).abs() <= 1e-9 * lost.max(1.0), "{is} {lost:e}");
-            assert!(d.interior().iter().all(|&a| found.action[a] == solution.lambda()[a]), "one action");
+            assert!(d.interior().iter().all(|&a| found.actions[0][a] == solution.lambda()[a]), "one action");
             cut += usize::from(found.parts.algebraic > 0.1 * found.parts.discretization());
         }
     }

@@ -18,10 +18,10 @@ fn solved(load: f64, height: f64) -> ErrorBound {
 #[test]
 fn the_rounding_of_a_large_height_is_no_action() {
     let bound = solved(1e-6, HEIGHT);
-    assert!(bound.action.iter().all(|&lambda| lambda == 0.0), "{:?}", bound.action);
+    assert!(bound.actions[0].iter().all(|&lambda| lambda == 0.0), "{:?}", bound.actions[0]);
     assert_eq!(bound.parts.contact, 0.0);
     let pressed = solved(15.0, 0.1);
-    assert!(pressed.action.iter().any(|&lambda| lambda > 1.0), "an action is one");
+    assert!(pressed.actions[0].iter().any(|&lambda| lambda > 1.0), "an action is one");
 }
 
 #[test]

@@ -4,10 +4,10 @@ use proptest::prelude::*;
 
 use super::{TOLERANCE, posed, solve_by, solvers};
 use crate::action::certify_stack;
-use crate::mesh::samples::renumbered;
+use crate::mesh::samples::{renumbered, with_sides_and_patch};
 use crate::mesh::{Mesh, Pattern, rectangle};
 use crate::numeric::largest;
-use crate::problem::{ContactProblem, Field, Function, Membrane};
+use crate::problem::samples::stack::{Drawn, Numbers, drawn};
 use crate::solver::{ActiveSet, SolverOptions, StackSolver};
 
 /// Solvers certified within [`TOLERANCE`] agree so far, relative to the displacements.
@@ -17,88 +17,7 @@ const AGREEMENT: f64 = 1e-6;
 const ROUNDING: f64 = 1e-9;
 
 fn mesh() -> Mesh {
-    named(rectangle([0.0, 0.0], [1.0, 1.0], [7, 7], Pattern::Right).unwrap())
-}
-
-/// A mesh of the unit square with a region and three sides.
-fn named(mesh: Mesh) -> Mesh {
-    let on = |distance: f64| distance.abs() < 1e-9;
-    let mesh = mesh.with_region("patch", |[x, y]| x + 0.5 * y < 0.6).unwrap();
-    let mesh = mesh.with_curve("west", |[x, _]| on(x)).unwrap();
-    let mesh = mesh.with_curve("north", |[_, y]| on(1.0 - y)).unwrap();
-    mesh.with_curve("east", |[x, _]| on(1.0 - x)).unwrap()
-}
-
-/// The numbers of a membrane.
-#[derive(Debug, Clone)]
-struct Numbers {
-    tension: [f64; 2],
-    load: [f64; 3],
-    foundation: f64,
-    free: [bool; 3],
-    traction: f64,
-    step: f64,
-}
-
-fn numbers() -> impl Strategy<Value = Numbers> {
-    let tension = prop::array::uniform2(-1.0..1.0f64);
-    let load = prop::array::uniform3(-30.0..30.0f64);
-    let foundation = prop_oneof![Just(0.0), 0.0..20.0f64];
-    (tension, load, foundation, prop::array::uniform3(any::<bool>()), -3.0..3.0f64, 0.0..0.05f64).prop_map(
-        |(tension, load, foundation, free, traction, step)| Numbers {
-            tension: tension.map(|exponent| 10f64.powf(exponent)),
-            load,
-            foundation,
-            free,
-            traction,
-            step,
-        },
-    )
-}
-
-/// Membranes from the bottom up, each held a little higher than the one below, and whether there are floor and ceiling.
-#[derive(Debug, Clone)]
-struct Drawn {
-    membranes: Vec<Numbers>,
-    obstacles: [bool; 2],
-}
-
-fn drawn() -> impl Strategy<Value = Drawn> {
-    (prop::collection::vec(numbers(), 1..=5), prop::array::uniform2(any::<bool>()))
-        .prop_map(|(membranes, obstacles)| Drawn { membranes, obstacles })
-}
-
-impl Drawn {
-    /// The problem, with loads and heights times `size` and a further `push` on all membranes.
-    fn problem(&self, size: f64, push: f64) -> ContactProblem {
-        let mut heights = Vec::new();
-        let mut height = 0.0;
-        for numbers in self.membranes.iter().rev() {
-            heights.push(height);
-            height += numbers.step;
-        }
-        let mut stack = ContactProblem::stack();
-        if self.obstacles[0] {
-            stack = stack.ceiling(size * (height + 0.1));
-        }
-        for (numbers, height) in self.membranes.iter().zip(heights.into_iter().rev()) {
-            let [f, fx, fxy] = numbers.load;
-            let load = Function::from_fn(move |x, y| size * (f + push + fx * x + fxy * x * y));
-            let tension = Field::by_region([("patch", numbers.tension[0])]).elsewhere(numbers.tension[1]);
-            let mut membrane =
-                Membrane::new(tension).load(load).foundation(numbers.foundation).height(size * height);
-            for (side, free) in ["west", "north", "east"].into_iter().zip(numbers.free) {
-                if free {
-                    membrane = membrane.traction_on(side, size * numbers.traction);
-                }
-            }
-            stack = stack.membrane(membrane);
-        }
-        if self.obstacles[1] {
-            stack = stack.floor(Field::from(Function::from_fn(move |x, y| size * (-0.2 + 0.1 * x * y))));
-        }
-        stack.build().unwrap()
-    }
+    with_sides_and_patch(rectangle([0.0, 0.0], [1.0, 1.0], [7, 7], Pattern::Right).unwrap())
 }
 
 fn all(u: &[Vec<f64>]) -> impl Iterator<Item = f64> {
@@ -152,7 +71,7 @@ proptest! {
     fn the_numbering_of_the_mesh_does_not_matter(drawn in drawn(), seed in any::<u64>()) {
         let mesh = mesh();
         let (other, number) = renumbered(&mesh, seed);
-        let other = named(Mesh::new(other.points().to_vec(), other.triangles().to_vec()).unwrap());
+        let other = with_sides_and_patch(Mesh::new(other.points().to_vec(), other.triangles().to_vec()).unwrap());
         let [one, other] = [&mesh, &other].map(|mesh| {
             let d = posed(&drawn.problem(1.0, 0.0), mesh);
             (solve_by(&mut ActiveSet, &d), d.scales().displacement)

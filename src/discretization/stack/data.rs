@@ -1,0 +1,94 @@
+//! The data of a stack as the mesh sees them, triangle by triangle: what bounds of the error need beside the discrete problem.
+
+use super::StackDiscretization;
+use super::error::StackError;
+use super::fields::{IntegrationRule, at_samples, samples};
+use super::membrane::MembraneData;
+use super::supports::Held;
+use crate::fem::LoadMoments;
+use crate::geometry::distance_sq;
+use crate::problem::{ContactProblem, Field};
+
+/// A field at seven points of a triangle: the corners, the midpoints of the edges from each corner to the next, the barycentre.
+pub(crate) type Samples = [f64; 7];
+
+impl StackDiscretization {
+    /// The problem.
+    pub fn problem(&self) -> &ContactProblem {
+        &self.problem
+    }
+
+    /// How the data are integrated.
+    pub fn rule(&self) -> IntegrationRule {
+        self.rule
+    }
+
+    /// The tension of membrane `i` (from 1) on triangle `t`, as it is in `K_i`.
+    pub(crate) fn tension_on(&self, i: usize, t: usize) -> f64 {
+        let MembraneData { factor, profile, .. } = &self.membranes[i - 1];
+        factor * self.profiles[*profile][t]
+    }
+
+    /// The tension of membrane `i` at the points of each triangle; `None` where it has one value on each.
+    ///
+    /// # Errors
+    /// When it has no value somewhere.
+    pub(crate) fn tension_samples(&self, i: usize) -> Result<Option<Vec<Samples>>, StackError> {
+        let tension = &self.problem.membranes()[i - 1].tension;
+        if tension.is_constant_on_triangles() {
+            return Ok(None);
+        }
+        samples(&self.mesh, tension, &format!("tension mu{i}")).map(Some)
+    }
+
+    /// The ceiling (0) or the floor (1) at the points of each triangle; `None` where it is affine on each, or not there.
+    ///
+    /// # Errors
+    /// When it has no value somewhere.
+    pub(crate) fn obstacle_samples(&self, k: usize) -> Result<Option<Vec<Samples>>, StackError> {
+        let (field, name) = match k {
+            0 => (self.problem.ceiling(), "the ceiling"),
+            _ => (self.problem.floor(), "the floor"),
+        };
+        match field {
+            None | Some(Field::PerVertex(_)) => Ok(None),
+            Some(field) if field.constant().is_some() => Ok(None),
+            Some(field) => samples(&self.mesh, field, name).map(Some),
+        }
+    }
+
+    /// A P1 function at the points of triangle `t`.
+    pub(crate) fn at_samples(&self, t: usize, values: &[f64]) -> Samples {
+        at_samples(self.mesh.triangles()[t].map(|a| values[a]))
+    }
+
+    /// The load of membrane `i` triangle by triangle, without line loads.
+    pub(crate) fn moments(&self, i: usize) -> &LoadMoments {
+        &self.membranes[i - 1].moments
+    }
+
+    /// The mean of the foundation of membrane `i` on triangle `t`.
+    pub(crate) fn foundation_on(&self, i: usize, t: usize) -> f64 {
+        self.membranes[i - 1].foundation_means.as_ref().map_or(0.0, |means| means[t])
+    }
+
+    /// The length of an edge.
+    pub(crate) fn edge_length(&self, [a, b]: [usize; 2]) -> f64 {
+        distance_sq(self.mesh.points()[a], self.mesh.points()[b]).sqrt()
+    }
+
+    /// How membrane `i` is held.
+    pub(crate) fn held(&self, i: usize) -> &Held {
+        &self.membranes[i - 1].held
+    }
+
+    /// By how much two quadrature rules differ in the loads, membrane by membrane; see
+    /// [`Discretization::quadrature_difference`](crate::discretization::Discretization::quadrature_difference).
+    pub fn quadrature_difference(&self) -> Vec<f64> {
+        let of = |membrane: &MembraneData| {
+            let profile = self.profiles[membrane.profile].iter().copied().fold(f64::INFINITY, f64::min);
+            membrane.moments.quadrature_difference() / (membrane.factor * profile).sqrt()
+        };
+        self.membranes.iter().map(of).collect()
+    }
+}
