@@ -3,7 +3,7 @@
 mod common;
 
 use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
-use membrane_contact::action::{Action, certify};
+use membrane_contact::action::{Action, certify_pair};
 use membrane_contact::estimate::ErrorBound;
 use membrane_contact::solver::{ActiveSet, ContactSolver, Multigrid, SolverOptions};
 use membrane_contact::study::comparison::square_problem;
@@ -19,7 +19,7 @@ fn recovery(criterion: &mut Criterion) {
             bencher.iter(|| Action::recover(&d, &candidate.displacement));
         });
         group.bench_function(BenchmarkId::new("certify", cells), |bencher| {
-            let certified = |candidate| certify(&d, candidate, options.tolerance).expect("it certifies");
+            let certified = |candidate| certify_pair(&d, candidate, options.tolerance).expect("it certifies");
             bencher.iter_batched(|| candidate.clone(), certified, BatchSize::LargeInput);
         });
         // To be compared: the bound should cost less than a solve.

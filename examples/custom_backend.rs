@@ -6,8 +6,8 @@
 
 use std::time::Instant;
 
-use membrane_contact::action::certify;
-use membrane_contact::discretization::Discretization;
+use membrane_contact::action::certify_pair;
+use membrane_contact::discretization::PairDiscretization;
 use membrane_contact::mesh::{Pattern, rectangle};
 use membrane_contact::problem::{ContactProblem, Expression};
 use membrane_contact::qp::{BackendError, KktResiduals, QpBackend, QpOptions, QpProblem, QpSolution, Status};
@@ -110,11 +110,11 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let load = Expression::parse("10*sin(pi*x)")?;
     let problem = ContactProblem::builder().tension(1.0, 3.0).load(-15.0, load).height(0.1).build()?;
     let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [32, 32], Pattern::Right)?;
-    let d = Discretization::new(&problem, mesh)?;
+    let d = PairDiscretization::new(&problem, mesh)?;
     let options = SolverOptions { polish: false, ..SolverOptions::default() };
 
     let candidate = QpSolver::new(MethodOfMultipliers { penalty: 100.0 }).solve(&d, &options)?;
-    let solution = certify(&d, candidate, options.tolerance)?;
+    let solution = certify_pair(&d, candidate, options.tolerance)?;
     println!(
         "{}: {} outer iterations, energy {:.9}, contact area {:.4}",
         solution.statistics().solver,

@@ -11,11 +11,11 @@ mod stack;
 #[cfg(all(test, feature = "clarabel"))]
 mod tests;
 
-pub use certificate::{Reason, Rejected, certify};
+pub use certificate::{Reason, Rejected, certify_pair};
 pub(crate) use extension::{extend_to_boundary, extend_to_held};
 pub use pairing::{equilibrium, is_in_cone, pairing, project, variation};
 pub use projection::CutOff;
 pub use recovery::Action;
 pub use residuals::{Residual, Residuals};
-pub use solution::ContactSolution;
+pub use solution::PairSolution;
 pub use stack::{GapSolution, StackSolution, certify_stack};

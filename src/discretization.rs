@@ -29,7 +29,7 @@ pub type Displacement = [Vec<f64>; 2];
 /// Vectors over *vertices* have an entry for each vertex of the mesh; vectors over *unknowns* have one for each
 /// interior vertex, in the order of [`interior`](Self::interior).
 #[derive(Debug, Clone)]
-pub struct Discretization {
+pub struct PairDiscretization {
     pub(crate) mesh: Arc<Mesh>,
     pub(crate) tension: [f64; 2],
     pub(crate) stiffness: CsMat<f64>,
@@ -67,20 +67,20 @@ pub(crate) struct Balance {
     pub(crate) terms: f64,
 }
 
-impl Discretization {
+impl PairDiscretization {
     /// Assembles the discrete problem. Linear time and memory.
     ///
     /// # Errors
-    /// [`DiscretizationError`] when the problem is not [the pair](ContactProblem::as_pair), a load is not finite at a quadrature point, the height is negative or not finite at a
+    /// [`PairError`] when the problem is not [the pair](ContactProblem::as_pair), a load is not finite at a quadrature point, the height is negative or not finite at a
     /// boundary vertex, or tensions, loads or displacements are so large or small that energies would overflow.
-    pub fn new(problem: &ContactProblem, mesh: impl Into<Arc<Mesh>>) -> Result<Self, DiscretizationError> {
-        let pair = problem.as_pair().ok_or(DiscretizationError::NotThePair)?;
+    pub fn new(problem: &ContactProblem, mesh: impl Into<Arc<Mesh>>) -> Result<Self, PairError> {
+        let pair = problem.as_pair().ok_or(PairError::NotThePair)?;
         let shared: Arc<Mesh> = mesh.into();
         let mesh = &*shared;
         let around = VertexTriangles::new(mesh.points().len(), mesh.triangles());
         let moments_of = |i: usize| {
             LoadMoments::new(mesh, &pair.load()[i])
-                .map_err(|source| DiscretizationError::Load { membrane: i + 1, source })
+                .map_err(|source| PairError::Load { membrane: i + 1, source })
         };
         let moments = [moments_of(0)?, moments_of(1)?];
         let load = [0, 1].map(|i: usize| moments[i].vector(mesh, &around));
@@ -240,7 +240,7 @@ impl Scales {
         }
     }
 
-    fn check_range(&self, tension: [f64; 2]) -> Result<(), DiscretizationError> {
+    fn check_range(&self, tension: [f64; 2]) -> Result<(), PairError> {
         let sizes = [
             ("the tension mu1 is", tension[0]),
             ("the tension mu2 is", tension[1]),
@@ -248,26 +248,26 @@ impl Scales {
             ("the displacements have the size", self.displacement),
         ];
         match sizes.into_iter().find(|(_, value)| !(1.0 / LARGEST..=LARGEST).contains(value)) {
-            Some((quantity, value)) => Err(DiscretizationError::OutOfRange { quantity, value }),
+            Some((quantity, value)) => Err(PairError::OutOfRange { quantity, value }),
             None => Ok(()),
         }
     }
 }
 
 /// A load that varies, of which all that the quadrature has met is next to nothing.
-fn not_seen(moments: &[LoadMoments; 2], load: &[Vec<f64>; 2]) -> Option<DiscretizationError> {
+fn not_seen(moments: &[LoadMoments; 2], load: &[Vec<f64>; 2]) -> Option<PairError> {
     let all_small = load.iter().flatten().all(|force| force.abs() < 1.0 / LARGEST);
     let varies =
         |i: &usize| matches!(moments[*i], LoadMoments::Varying { .. }) && !moments[*i].sees_nothing();
-    (0..2).filter(|_| all_small).find(varies).map(|i| DiscretizationError::NotSeen { membrane: i + 1 })
+    (0..2).filter(|_| all_small).find(varies).map(|i| PairError::NotSeen { membrane: i + 1 })
 }
 
-fn boundary_height(pair: &Pair, mesh: &Mesh) -> Result<Vec<f64>, DiscretizationError> {
+fn boundary_height(pair: &Pair, mesh: &Mesh) -> Result<Vec<f64>, PairError> {
     let is_boundary = |a: &usize| mesh.kind()[*a] == VertexKind::Boundary;
     let boundary: Vec<usize> = (0..mesh.points().len()).filter(is_boundary).collect();
     let [x, y] = [0, 1].map(|axis| boundary.iter().map(|&a| mesh.points()[a][axis]).collect::<Vec<f64>>());
     let mut values = vec![0.0; boundary.len()];
-    let refused = |k: usize, value: f64| DiscretizationError::Height {
+    let refused = |k: usize, value: f64| PairError::Height {
         vertex: boundary[k],
         point: mesh.points()[boundary[k]],
         value,
@@ -277,7 +277,7 @@ fn boundary_height(pair: &Pair, mesh: &Mesh) -> Result<Vec<f64>, DiscretizationE
             let is_there = |k: &usize| [x[*k], y[*k]] == point;
             refused((0..boundary.len()).find(is_there).expect("one of the points"), value)
         }
-        source => DiscretizationError::HeightFailed { source },
+        source => PairError::HeightFailed { source },
     })?;
     if let Some(k) = values.iter().position(|&value| value < 0.0) {
         return Err(refused(k, values[k]));
@@ -316,7 +316,7 @@ pub(crate) fn principal_submatrix(matrix: &CsMat<f64>, chosen: &[usize]) -> CsMa
 /// Why a problem cannot be posed on a mesh.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
-pub enum DiscretizationError {
+pub enum PairError {
     /// Another stack than the paper's pair.
     #[error("the problem is not the paper's pair: take `StackDiscretization`")]
     NotThePair,
@@ -360,7 +360,7 @@ pub enum DiscretizationError {
     },
 }
 
-impl DiscretizationError {
+impl PairError {
     /// The vertex that the error names.
     pub fn vertex(&self) -> Option<usize> {
         match *self {

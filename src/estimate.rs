@@ -17,7 +17,7 @@ pub use stack::NoBound;
 
 use thiserror::Error;
 
-use crate::discretization::Discretization;
+use crate::discretization::PairDiscretization;
 use crate::mesh::MeshError;
 use crate::problem::EvaluationError;
 
@@ -83,7 +83,10 @@ impl MeasureError {
     }
 
     /// Refuses vectors that are not over the vertices of `d`.
-    fn check<V: AsRef<[f64]>>(d: &Discretization, vectors: impl IntoIterator<Item = V>) -> Result<(), Self> {
+    fn check<V: AsRef<[f64]>>(
+        d: &PairDiscretization,
+        vectors: impl IntoIterator<Item = V>,
+    ) -> Result<(), Self> {
         let vertices = d.mesh().points().len();
         let mut lengths = vectors.into_iter().map(|values| values.as_ref().len());
         match lengths.find(|&values| values != vertices) {

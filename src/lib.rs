@@ -3,7 +3,7 @@
 //!
 //! The modules stand in the order of the data; each uses only those before it. Start with
 //! [`ContactProblem`](problem::ContactProblem), a [`Mesh`](mesh::Mesh), the
-//! [`Discretization`](discretization::Discretization) of the two, a [`ContactSolver`](solver::ContactSolver) such as
+//! [`PairDiscretization`](discretization::PairDiscretization) of the two, a [`ContactSolver`](solver::ContactSolver) such as
 //! [`QpSolver`](solver::QpSolver), and [`certify`](action::certify). Numbers in round brackets are those of F. Ben
 //! Belgacem, C. Bernardi, A. Blouza, M. Vohralik, Math. Model. Nat. Phenom. 4 (2009).
 #![deny(missing_docs)]
@@ -35,8 +35,8 @@ pub use sprs;
 
 /// What most programs need: `use membrane_contact::prelude::*`.
 pub mod prelude {
-    pub use crate::action::{ContactSolution, StackSolution, certify, certify_stack};
-    pub use crate::discretization::{Discretization, StackDiscretization};
+    pub use crate::action::{PairSolution, StackSolution, certify_pair, certify_stack};
+    pub use crate::discretization::{PairDiscretization, StackDiscretization};
     pub use crate::estimate::ErrorBound;
     pub use crate::mesh::{Mesh, MeshSize, Pattern, disk, generate, l_shape, polygon, rectangle};
     pub use crate::problem::{ContactProblem, Domain, Expression, Field, Function, Membrane};

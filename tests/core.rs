@@ -16,7 +16,7 @@ fn the_built_in_solvers_need_no_feature() {
     let solvers: [Box<dyn ContactSolver>; 2] = [Box::new(Multigrid), Box::new(ActiveSet)];
     for mut solver in solvers {
         let candidate = solver.solve(&solved.discretization, &SolverOptions::default()).unwrap();
-        let solution = certify(&solved.discretization, candidate, 1e-8).unwrap();
+        let solution = certify_pair(&solved.discretization, candidate, 1e-8).unwrap();
         assert!((solution.total_force() / force - 1.0).abs() < AGREED, "{}", solver.name());
     }
 }

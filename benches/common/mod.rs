@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use criterion::Criterion;
-use membrane_contact::discretization::Discretization;
+use membrane_contact::discretization::PairDiscretization;
 use membrane_contact::mesh::Mesh;
 use membrane_contact::study::comparison::{square_mesh, square_problem};
 
@@ -17,8 +17,8 @@ pub fn mesh(cells: usize) -> Mesh {
 }
 
 /// The problem of the family on one of its meshes.
-pub fn discretize(mesh: &Mesh) -> Discretization {
-    Discretization::new(&square_problem().expect("valid data"), mesh.clone()).expect("valid data")
+pub fn discretize(mesh: &Mesh) -> PairDiscretization {
+    PairDiscretization::new(&square_problem().expect("valid data"), mesh.clone()).expect("valid data")
 }
 
 /// Few samples, a few seconds for each benchmark.

@@ -3,8 +3,8 @@
 use thiserror::Error;
 
 use super::projection::Projection;
-use super::{Action, ContactSolution, Residuals};
-use crate::discretization::Discretization;
+use super::{Action, PairSolution, Residuals};
+use crate::discretization::PairDiscretization;
 use crate::qp::Status;
 use crate::solver::{Candidate, Statistics};
 
@@ -18,11 +18,11 @@ use crate::solver::{Candidate, Statistics};
 ///
 /// # Errors
 /// [`Rejected`], with all residuals, when one is larger or not a number, or when a vector has the wrong length.
-pub fn certify(
-    d: &Discretization,
+pub fn certify_pair(
+    d: &PairDiscretization,
     candidate: Candidate,
     tolerance: f64,
-) -> Result<ContactSolution, Box<Rejected>> {
+) -> Result<PairSolution, Box<Rejected>> {
     let Candidate { displacement, multiplier, statistics } = candidate;
     let lengths_fit = displacement.iter().all(|u| u.len() == d.mesh().points().len())
         && multiplier.len() == d.interior().len();
@@ -35,7 +35,7 @@ pub fn certify(
         return Err(Box::new(Rejected { reason, residuals: Some(residuals), statistics }));
     }
     let projection = Projection::new(d, displacement, &multiplier, action);
-    Ok(ContactSolution::new(d, projection, residuals, statistics))
+    Ok(PairSolution::new(d, projection, residuals, statistics))
 }
 
 impl Reason {

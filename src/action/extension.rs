@@ -1,11 +1,11 @@
 //! The action on the dual cells of the boundary, where `lambda_h` is zero and the exact action need not be.
 
-use crate::discretization::{Discretization, Displacement};
+use crate::discretization::{Displacement, PairDiscretization};
 use crate::mesh::{Mesh, VertexKind};
 
 /// Continues an action over vertices to the boundary, and tells where; see [`extend_to_held`].
 pub(crate) fn extend_to_boundary(
-    d: &Discretization,
+    d: &PairDiscretization,
     [u1, u2]: &Displacement,
     lambda: &mut [f64],
 ) -> Vec<bool> {
@@ -77,7 +77,8 @@ mod tests {
         action: impl Fn(f64, f64) -> f64,
     ) -> (Vec<f64>, Vec<bool>) {
         let height = Function::from_fn(gap.clone());
-        let d = Discretization::new(&ContactProblem::builder().height(height).build().unwrap(), mesh.clone());
+        let d =
+            PairDiscretization::new(&ContactProblem::builder().height(height).build().unwrap(), mesh.clone());
         let u1: Vec<f64> = mesh.points().iter().map(|&[x, y]| gap(x, y)).collect();
         let u2 = vec![0.0; u1.len()];
         let inside = |(&[x, y], &kind): (&[f64; 2], &VertexKind)| match kind {

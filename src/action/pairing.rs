@@ -1,13 +1,13 @@
 //! The discrete space `Y_h` of actions, its pairing with displacements, and the full discrete problem (4.7).
 
-use crate::discretization::{Discretization, Displacement};
+use crate::discretization::{Displacement, PairDiscretization};
 use crate::fem::load;
 use crate::problem::{EvaluationError, Function};
 
 /// `<rho_h, v_h>_h = sum_a rho_a v_h(a) int phi_a` (4.3).
 ///
 /// `rho` is over unknowns (its values on the dual cells), `v` over vertices; only its values at interior vertices enter.
-pub fn pairing(d: &Discretization, rho: &[f64], v: &[f64]) -> f64 {
+pub fn pairing(d: &PairDiscretization, rho: &[f64], v: &[f64]) -> f64 {
     d.interior().iter().zip(rho).map(|(&a, rho)| rho * v[a] * d.dual_area()[a]).sum()
 }
 
@@ -15,7 +15,7 @@ pub fn pairing(d: &Discretization, rho: &[f64], v: &[f64]) -> f64 {
 ///
 /// # Errors
 /// [`EvaluationError`] when `rho` fails, or is NaN or infinite at a quadrature point.
-pub fn project(d: &Discretization, rho: &Function) -> Result<Vec<f64>, EvaluationError> {
+pub fn project(d: &PairDiscretization, rho: &Function) -> Result<Vec<f64>, EvaluationError> {
     let moments = load(d.mesh(), rho)?;
     Ok(d.interior().iter().map(|&a| moments[a] / d.dual_area()[a]).collect())
 }
@@ -27,7 +27,7 @@ pub fn is_in_cone(rho: &[f64]) -> bool {
 
 /// The first line of (4.7) tested with the hat functions of membrane 1, then of membrane 2:
 /// `mu_i (grad u_ih, grad phi_a) - (f_i, phi_a) + (-1)^i <lambda_h, phi_a>_h`, over unknowns. Zero at the solution.
-pub fn equilibrium(d: &Discretization, displacement: &Displacement, lambda: &[f64]) -> [Vec<f64>; 2] {
+pub fn equilibrium(d: &PairDiscretization, displacement: &Displacement, lambda: &[f64]) -> [Vec<f64>; 2] {
     [0, 1].map(|i| {
         let sign = if i == 0 { -1.0 } else { 1.0 };
         let push = d.interior().iter().zip(lambda).map(|(&a, lambda)| sign * lambda * d.dual_area()[a]);
@@ -37,7 +37,7 @@ pub fn equilibrium(d: &Discretization, displacement: &Displacement, lambda: &[f6
 
 /// The second line of (4.7) for one `chi_h` in the cone, over unknowns: `<chi_h - lambda_h, u1h - u2h>_h`. Not negative at
 /// the solution, whatever `chi_h`.
-pub fn variation(d: &Discretization, displacement: &Displacement, lambda: &[f64], chi: &[f64]) -> f64 {
+pub fn variation(d: &PairDiscretization, displacement: &Displacement, lambda: &[f64], chi: &[f64]) -> f64 {
     let [u1, u2] = displacement;
     let gap: Vec<f64> = u1.iter().zip(u2).map(|(u1, u2)| u1 - u2).collect();
     pairing(d, chi, &gap) - pairing(d, lambda, &gap)
@@ -48,7 +48,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::action::certify;
+    use crate::action::certify_pair;
     use crate::mesh::{Mesh, Pattern, rectangle};
     use crate::problem::ContactProblem;
     use crate::problem::samples::drawn;
@@ -67,9 +67,9 @@ mod tests {
     }
 
     /// `[u1, u2]` over vertices and `lambda` over unknowns.
-    fn solve(d: &Discretization) -> (Displacement, Vec<f64>) {
+    fn solve(d: &PairDiscretization) -> (Displacement, Vec<f64>) {
         let candidate = ActiveSet.solve(d, &SolverOptions::default()).unwrap();
-        let solution = certify(d, candidate, 1e-8).unwrap();
+        let solution = certify_pair(d, candidate, 1e-8).unwrap();
         let lambda = d.interior().iter().map(|&a| solution.lambda()[a]).collect();
         (solution.displacement().clone(), lambda)
     }
@@ -85,7 +85,7 @@ mod tests {
         fn the_solution_solves_both_lines_of_the_full_problem(
             problem in drawn(Function::Constant), chi in prop::collection::vec(0.0..9.0, 113)
         ) {
-            let d = Discretization::new(&problem, mesh()).unwrap();
+            let d = PairDiscretization::new(&problem, mesh()).unwrap();
             let (displacement, lambda) = solve(&d);
             prop_assert!(is_in_cone(&lambda));
             for line in equilibrium(&d, &displacement, &lambda) {
@@ -103,7 +103,7 @@ mod tests {
     #[test]
     fn a_wrong_sign_or_factor_of_the_action_is_seen_by_the_first_line() {
         let mesh = mesh();
-        let d = Discretization::new(&problem(-15.0, 5.0, 0.1), mesh.clone()).unwrap();
+        let d = PairDiscretization::new(&problem(-15.0, 5.0, 0.1), mesh.clone()).unwrap();
         let (displacement, lambda) = solve(&d);
         assert!(largest(&lambda) > 1.0, "there is contact");
         for factor in [-1.0, 0.0, 1.01, 3.0] {
@@ -118,7 +118,7 @@ mod tests {
     #[test]
     fn a_gap_that_closes_makes_the_second_line_fail_for_some_chi() {
         let mesh = mesh();
-        let d = Discretization::new(&problem(-15.0, 5.0, 0.1), mesh.clone()).unwrap();
+        let d = PairDiscretization::new(&problem(-15.0, 5.0, 0.1), mesh.clone()).unwrap();
         let (mut displacement, lambda) = solve(&d);
         let k = lambda.iter().position(|&lambda| lambda > 0.0).expect("contact");
         displacement[0][d.interior()[k]] -= 0.1;
@@ -131,7 +131,7 @@ mod tests {
     #[test]
     fn the_projection_keeps_moments_and_constants() {
         let mesh = mesh();
-        let d = Discretization::new(&problem(0.0, 0.0, 0.0), mesh.clone()).unwrap();
+        let d = PairDiscretization::new(&problem(0.0, 0.0, 0.0), mesh.clone()).unwrap();
         let constant = project(&d, &Function::Constant(2.5)).unwrap();
         assert!(constant.iter().all(|rho| (rho - 2.5).abs() < ROUNDING));
 

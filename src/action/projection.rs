@@ -1,7 +1,7 @@
 //! From a candidate within the tolerance to a pair and an action in their cones, complementary to the last bit.
 
 use super::Action;
-use crate::discretization::{Discretization, Displacement};
+use crate::discretization::{Displacement, PairDiscretization};
 use crate::mesh::VertexKind;
 use crate::parallel::BLOCK;
 use crate::parallel::prelude::*;
@@ -56,7 +56,7 @@ pub struct CutOff {
 impl Projection {
     /// Of a candidate whose vectors fit `d`, and the action recovered from its displacements.
     pub(super) fn new(
-        d: &Discretization,
+        d: &PairDiscretization,
         mut displacement: Displacement,
         multiplier: &[f64],
         mut action: Vec<Action>,
@@ -87,7 +87,7 @@ impl Projection {
 }
 
 impl Before {
-    fn new(d: &Discretization, displacement: &Displacement, multiplier: &[f64]) -> Option<Self> {
+    fn new(d: &PairDiscretization, displacement: &Displacement, multiplier: &[f64]) -> Option<Self> {
         let [u1, u2] = displacement;
         let held =
             |a: usize| d.mesh().kind()[a] == VertexKind::Interior || (u1[a], u2[a]) == (d.height()[a], 0.0);
@@ -104,7 +104,12 @@ impl Before {
 }
 
 /// Whether the membranes touch, over unknowns.
-fn touching(d: &Discretization, [u1, u2]: &Displacement, multiplier: &[f64], action: &[Action]) -> Vec<bool> {
+fn touching(
+    d: &PairDiscretization,
+    [u1, u2]: &Displacement,
+    multiplier: &[f64],
+    action: &[Action],
+) -> Vec<bool> {
     let scales = d.scales();
     let [mu1, mu2] = d.tension();
     let gap_tension = mu1 * (mu2 / (mu1 + mu2));
@@ -119,7 +124,7 @@ fn touching(d: &Discretization, [u1, u2]: &Displacement, multiplier: &[f64], act
 }
 
 /// `u1 = g_h` and `u2 = 0` at the boundary vertices, zero at unused ones: the largest change of the gap.
-fn take_data_of_boundary(d: &Discretization, [u1, u2]: &mut Displacement) -> f64 {
+fn take_data_of_boundary(d: &PairDiscretization, [u1, u2]: &mut Displacement) -> f64 {
     let mut changed: f64 = 0.0;
     let kinds = d.mesh().kind().iter().enumerate();
     for (a, _) in kinds.filter(|&(_, &kind)| kind != VertexKind::Interior) {
@@ -130,7 +135,7 @@ fn take_data_of_boundary(d: &Discretization, [u1, u2]: &mut Displacement) -> f64
 }
 
 /// Makes `u1 = u2` where they touch and keeps `mu1 u1 + mu2 u2`: the largest gap or overlap that there was.
-fn close_gaps(d: &Discretization, touching: &[bool], [u1, u2]: &mut Displacement) -> f64 {
+fn close_gaps(d: &PairDiscretization, touching: &[bool], [u1, u2]: &mut Displacement) -> f64 {
     let [mu1, mu2] = d.tension();
     let share = [mu1 / (mu1 + mu2), mu2 / (mu1 + mu2)];
     let mut closed: f64 = 0.0;

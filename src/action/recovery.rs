@@ -1,6 +1,6 @@
 //! Local post-processing (4.5): the action as each membrane sees it.
 
-use crate::discretization::{Discretization, Displacement};
+use crate::discretization::{Displacement, PairDiscretization};
 use crate::parallel::BLOCK;
 use crate::parallel::prelude::*;
 
@@ -27,12 +27,12 @@ impl Action {
     ///
     /// # Panics
     /// When a displacement is not over the vertices of `d`.
-    pub fn recover(d: &Discretization, displacement: &Displacement) -> Vec<Self> {
+    pub fn recover(d: &PairDiscretization, displacement: &Displacement) -> Vec<Self> {
         let at = |&a: &usize| Self::at(d, a, displacement);
         d.interior().par_iter().with_min_len(BLOCK).map(at).collect()
     }
 
-    fn at(d: &Discretization, a: usize, [u1, u2]: &Displacement) -> Self {
+    fn at(d: &PairDiscretization, a: usize, [u1, u2]: &Displacement) -> Self {
         let balance = d.balance(a, [u1, u2]);
         let per_area = |force: f64| force / d.dual_area()[a];
         let [mu1, mu2] = d.tension();

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::Action;
-use crate::discretization::{Discretization, Displacement};
+use crate::discretization::{Displacement, PairDiscretization};
 use crate::mesh::{Mesh, VertexKind};
 use crate::numeric::or_infinite;
 use crate::parallel::prelude::*;
@@ -51,7 +51,7 @@ impl Residuals {
     /// # Panics
     /// When `displacement` is not over the vertices, or `multiplier` or `action` not over the unknowns of `d`.
     pub fn new(
-        d: &Discretization,
+        d: &PairDiscretization,
         displacement: &Displacement,
         multiplier: &[f64],
         action: &[Action],
@@ -151,7 +151,7 @@ impl Residual {
 
 /// `<lambda_h, u1 - u2>_h` by (4.3), (4.4), relative to the work of the scale force over the scale displacement.
 fn variational_inequality(
-    d: &Discretization,
+    d: &PairDiscretization,
     action: &[Action],
     gap: impl Fn(usize) -> f64 + Sync,
 ) -> Residual {

@@ -2,17 +2,17 @@
 
 use super::projection::{Before, Projection};
 use super::{CutOff, Residuals, extend_to_boundary};
-use crate::discretization::{Discretization, Displacement};
+use crate::discretization::{Displacement, PairDiscretization};
 use crate::parallel::sums;
 use crate::solver::Statistics;
 
-/// Displacements, action and contact set of (3.4), (4.5): made by [`certify`](super::certify) only.
+/// Displacements, action and contact set of (3.4), (4.5): made by [`certify_pair`](super::certify_pair) only.
 ///
 /// Vectors are over the vertices of the mesh, in its order. At each interior vertex one of three things is true, to the last
 /// bit: the membranes are apart, `u1 > u2` and `lambda_a = 0`; they touch and press, `u1 = u2` and `lambda_a > 0`; they touch
 /// without a force, `u1 = u2` and `lambda_a = 0`. *Contact* is where they touch, *pressed* where there is a force.
 #[derive(Debug, Clone)]
-pub struct ContactSolution {
+pub struct PairSolution {
     displacement: Displacement,
     lambda: Vec<f64>,
     contact: Vec<bool>,
@@ -34,7 +34,7 @@ struct Totals {
 
 impl Totals {
     /// Over the cells of all vertices that touch.
-    fn new(d: &Discretization, contact: &[bool], lambda: &[f64]) -> Self {
+    fn new(d: &PairDiscretization, contact: &[bool], lambda: &[f64]) -> Self {
         let over_cells = |a: usize| [f64::from(contact[a]), lambda[a]].map(|value| d.dual_area()[a] * value);
         let [area, force] = sums(contact.len(), over_cells);
         Self { area, force }
@@ -43,7 +43,7 @@ impl Totals {
     /// Likewise, with the cells of the boundary to which the contact is continued.
     fn extended(
         self,
-        d: &Discretization,
+        d: &PairDiscretization,
         displacement: &Displacement,
         contact: &[bool],
         lambda: &[f64],
@@ -59,9 +59,9 @@ impl Totals {
     }
 }
 
-impl ContactSolution {
+impl PairSolution {
     pub(super) fn new(
-        d: &Discretization,
+        d: &PairDiscretization,
         projection: Projection,
         residuals: Residuals,
         statistics: Statistics,
@@ -158,7 +158,7 @@ impl ContactSolution {
     }
 }
 
-fn energy(d: &Discretization, [u1, u2]: &Displacement) -> f64 {
+fn energy(d: &PairDiscretization, [u1, u2]: &Displacement) -> f64 {
     let of = |i: usize, u: &[f64], a: usize| {
         (0.5 * d.tension()[i] * d.stiffness_row(a, |b| u[b]) - d.load()[i][a]) * u[a]
     };

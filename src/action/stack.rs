@@ -14,14 +14,14 @@ use crate::solver::StackCandidate;
 use projection::Projection;
 
 /// Checks a candidate against `K_i`, `F_i`, heights and obstacles and hands it out as a solution when every residual, beyond
-/// what rounding of the terms explains, is at most `tolerance`; see [`certify`](super::certify).
+/// what rounding of the terms explains, is at most `tolerance`; see [`certify_pair`](super::certify_pair).
 ///
 /// What is handed out is in its cones and complementary to the last bit: in each gap, at each vertex, the layers are apart and
 /// without action, or they touch. In place of Proposition 12, the independent check is the *block balance*: at every vertex, the
 /// forces on membranes that touch each other, but nothing that holds them, add up to zero.
 ///
 /// # Errors
-/// As [`certify`](super::certify).
+/// As [`certify_pair`](super::certify_pair).
 pub fn certify_stack(
     d: &StackDiscretization,
     candidate: StackCandidate,

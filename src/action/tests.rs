@@ -1,7 +1,7 @@
 //! Every check of the certificate sees what it checks broken.
 
-use super::{Action, Reason, Residual, Residuals, certify};
-use crate::discretization::Discretization;
+use super::{Action, Reason, Residual, Residuals, certify_pair};
+use crate::discretization::PairDiscretization;
 use crate::mesh::samples::irregular;
 use crate::mesh::{Mesh, Pattern, VertexKind, rectangle};
 use crate::numeric::largest;
@@ -29,14 +29,14 @@ fn mesh() -> Mesh {
     rectangle([0.0, 0.0], [1.0, 1.0], [8, 8], Pattern::Right).unwrap()
 }
 
-fn solve(d: &Discretization, polish: bool, max_iterations: Option<usize>) -> Candidate {
+fn solve(d: &PairDiscretization, polish: bool, max_iterations: Option<usize>) -> Candidate {
     let options = SolverOptions { tolerance: TOLERANCE, polish, max_iterations, ..SolverOptions::default() };
     QpSolver::new(Clarabel).solve(d, &options).expect("Clarabel runs")
 }
 
 /// Asserts that the candidate is rejected, and that the checks named are among those that see why.
-fn assert_seen(d: &Discretization, candidate: Candidate, checks: &[fn(&Residuals) -> Residual]) {
-    let rejected = certify(d, candidate, TOLERANCE).expect_err("a broken candidate is rejected");
+fn assert_seen(d: &PairDiscretization, candidate: Candidate, checks: &[fn(&Residuals) -> Residual]) {
+    let rejected = certify_pair(d, candidate, TOLERANCE).expect_err("a broken candidate is rejected");
     let residuals = rejected.residuals.expect("there is something to measure");
     for (k, check) in checks.iter().enumerate() {
         let residual = check(&residuals);
@@ -47,8 +47,8 @@ fn assert_seen(d: &Discretization, candidate: Candidate, checks: &[fn(&Residuals
 #[test]
 fn a_sound_candidate_is_certified_with_part_in_contact() {
     let mesh = mesh();
-    let d = Discretization::new(&problem(0.0), mesh.clone()).unwrap();
-    let solution = certify(&d, solve(&d, true, None), TOLERANCE).unwrap();
+    let d = PairDiscretization::new(&problem(0.0), mesh.clone()).unwrap();
+    let solution = certify_pair(&d, solve(&d, true, None), TOLERANCE).unwrap();
     let touching = solution.contact().iter().filter(|&&contact| contact).count();
     assert!(0 < touching && touching < d.interior().len(), "the faults below need both: {touching}");
 }
@@ -56,7 +56,7 @@ fn a_sound_candidate_is_certified_with_part_in_contact() {
 #[test]
 fn a_flipped_boundary_lift_is_seen_although_the_backend_is_content() {
     let mesh = mesh();
-    let d = Discretization::new(&problem(0.0), mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem(0.0), mesh.clone()).unwrap();
     let mut flipped = d.clone();
     flipped.height.iter_mut().for_each(|g| *g = -*g);
     let mut candidate = solve(&flipped, false, None);
@@ -70,7 +70,7 @@ fn a_flipped_boundary_lift_is_seen_although_the_backend_is_content() {
 #[test]
 fn a_wrong_dual_area_is_seen() {
     let mesh = mesh();
-    let d = Discretization::new(&problem(0.0), mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem(0.0), mesh.clone()).unwrap();
     let candidate = solve(&d, true, None);
     let pushed = (0..candidate.multiplier.len()).find(|&k| candidate.multiplier[k] > 0.0).expect("contact");
     let mut wrong = d.clone();
@@ -81,7 +81,7 @@ fn a_wrong_dual_area_is_seen() {
 #[test]
 fn a_flipped_dual_is_seen() {
     let mesh = mesh();
-    let d = Discretization::new(&problem(0.0), mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem(0.0), mesh.clone()).unwrap();
     let mut candidate = solve(&d, true, None);
     candidate.multiplier.iter_mut().for_each(|y| *y = -*y);
     assert_seen(&d, candidate, &[|r| r.dual_sign, |r| r.stationarity, |r| r.dual_mismatch]);
@@ -90,16 +90,16 @@ fn a_flipped_dual_is_seen() {
 #[test]
 fn action_without_touching_is_seen_although_the_equations_hold() {
     let mesh = mesh();
-    let d = Discretization::new(&problem(0.0), mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem(0.0), mesh.clone()).unwrap();
     // A push p of one membrane on the other, wherever they are: mu1 K u1 - F_1 = p |D_a| = F_2 - mu2 K u2.
     let push = 30.0;
-    let pushed = Discretization::new(&problem(push), mesh.clone()).unwrap();
+    let pushed = PairDiscretization::new(&problem(push), mesh.clone()).unwrap();
     let mut candidate = solve(&pushed, true, None);
     for (y, &a) in candidate.multiplier.iter_mut().zip(d.interior()) {
         assert_eq!(*y, 0.0, "the membranes are apart");
         *y = push * d.dual_area()[a];
     }
-    let residuals = certify(&d, candidate.clone(), TOLERANCE).unwrap_err().residuals.unwrap();
+    let residuals = certify_pair(&d, candidate.clone(), TOLERANCE).unwrap_err().residuals.unwrap();
     assert!(
         residuals.stationarity.beyond_rounding < TOLERANCE && residuals.dual_sign.beyond_rounding < TOLERANCE
     );
@@ -109,7 +109,7 @@ fn action_without_touching_is_seen_although_the_equations_hold() {
 #[test]
 fn membranes_that_pass_through_each_other_are_seen() {
     let mesh = mesh();
-    let d = Discretization::new(&problem(0.0), mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem(0.0), mesh.clone()).unwrap();
     let mut candidate = solve(&d, true, None);
     let a = d.interior()[candidate.multiplier.iter().position(|&y| y > 0.0).expect("contact")];
     candidate.displacement[0][a] -= 0.1;
@@ -119,7 +119,7 @@ fn membranes_that_pass_through_each_other_are_seen() {
 #[test]
 fn a_wrong_trace_is_seen() {
     let mesh = mesh();
-    let d = Discretization::new(&problem(0.0), mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem(0.0), mesh.clone()).unwrap();
     for membrane in 0..2 {
         let mut candidate = solve(&d, true, None);
         candidate.displacement[membrane][0] += 0.1;
@@ -130,7 +130,7 @@ fn a_wrong_trace_is_seen() {
 #[test]
 fn displacements_of_one_membrane_alone_are_seen_by_the_mismatch_of_the_actions() {
     let mesh = mesh();
-    let d = Discretization::new(&problem(0.0), mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem(0.0), mesh.clone()).unwrap();
     for membrane in 0..2 {
         let mut candidate = solve(&d, true, None);
         let middle = d.interior()[d.interior().len() / 2];
@@ -142,7 +142,7 @@ fn displacements_of_one_membrane_alone_are_seen_by_the_mismatch_of_the_actions()
 #[test]
 fn the_action_depends_on_the_gap_alone() {
     let mesh = mesh();
-    let d = Discretization::new(&problem(0.0), mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem(0.0), mesh.clone()).unwrap();
     let [mut u1, mut u2] = solve(&d, true, None).displacement;
     let before = Action::recover(&d, &[u1.clone(), u2.clone()]);
     for &a in d.interior() {
@@ -164,7 +164,7 @@ fn the_action_depends_on_the_gap_alone() {
 #[test]
 fn nan_and_infinity_never_pass() {
     let mesh = mesh();
-    let d = Discretization::new(&problem(0.0), mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem(0.0), mesh.clone()).unwrap();
     let sound = solve(&d, true, None);
     for value in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         let mut candidate = sound.clone();
@@ -177,27 +177,27 @@ fn nan_and_infinity_never_pass() {
         candidate.displacement[1][0] = value;
         assert_seen(&d, candidate, &[|r| r.primal]);
     }
-    assert!(certify(&d, sound, f64::NAN).is_err(), "a tolerance that is no number certifies nothing");
+    assert!(certify_pair(&d, sound, f64::NAN).is_err(), "a tolerance that is no number certifies nothing");
 }
 
 #[test]
 fn an_early_stop_is_seen_and_repaired_by_the_polish() {
     let mesh = mesh();
-    let d = Discretization::new(&problem(0.0), mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem(0.0), mesh.clone()).unwrap();
     let stopped = solve(&d, false, Some(3));
     assert_eq!(stopped.statistics.status, crate::qp::Status::IterationLimit);
     assert_seen(&d, stopped, &[|r| r.complementarity]);
     let polished = solve(&d, true, Some(3));
-    assert!(certify(&d, polished, TOLERANCE).is_ok(), "the status does not decide: the residuals do");
+    assert!(certify_pair(&d, polished, TOLERANCE).is_ok(), "the status does not decide: the residuals do");
 }
 
 #[test]
 fn what_is_held_against_the_tolerance_is_the_largest_residual_beyond_rounding() {
     let mesh = mesh();
-    let d = Discretization::new(&problem(0.0), mesh.clone()).unwrap();
-    let sound = certify(&d, solve(&d, true, None), TOLERANCE).unwrap();
+    let d = PairDiscretization::new(&problem(0.0), mesh.clone()).unwrap();
+    let sound = certify_pair(&d, solve(&d, true, None), TOLERANCE).unwrap();
     assert!(sound.residuals().beyond_rounding() <= TOLERANCE);
-    let rejected = certify(&d, solve(&d, false, Some(3)), TOLERANCE).unwrap_err();
+    let rejected = certify_pair(&d, solve(&d, false, Some(3)), TOLERANCE).unwrap_err();
     let residuals = rejected.residuals.expect("there is something to measure");
     assert!(residuals.beyond_rounding() >= residuals.complementarity.beyond_rounding);
     assert!(residuals.beyond_rounding() > SEEN);
@@ -206,9 +206,9 @@ fn what_is_held_against_the_tolerance_is_the_largest_residual_beyond_rounding() 
 #[test]
 fn the_remedy_follows_from_why_the_solver_stopped() {
     let mesh = mesh();
-    let d = Discretization::new(&problem(0.0), mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem(0.0), mesh.clone()).unwrap();
     let mut stopped = solve(&d, false, Some(3));
-    let remedy = |candidate: Candidate| certify(&d, candidate, TOLERANCE).unwrap_err().remedy();
+    let remedy = |candidate: Candidate| certify_pair(&d, candidate, TOLERANCE).unwrap_err().remedy();
     assert!(remedy(stopped.clone()).contains("more iterations"));
     stopped.statistics.status = crate::qp::Status::Stalled;
     assert!(remedy(stopped).contains("another solver"));
@@ -217,14 +217,14 @@ fn the_remedy_follows_from_why_the_solver_stopped() {
 #[test]
 fn vectors_of_the_wrong_length_are_rejected() {
     let mesh = mesh();
-    let d = Discretization::new(&problem(0.0), mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem(0.0), mesh.clone()).unwrap();
     let sound = solve(&d, true, None);
     let mut short = sound.clone();
     short.multiplier.pop();
-    assert_eq!(certify(&d, short, TOLERANCE).unwrap_err().reason, Reason::Lengths);
+    assert_eq!(certify_pair(&d, short, TOLERANCE).unwrap_err().reason, Reason::Lengths);
     let mut long = sound;
     long.displacement[1].push(0.0);
-    assert_eq!(certify(&d, long, TOLERANCE).unwrap_err().reason, Reason::Lengths);
+    assert_eq!(certify_pair(&d, long, TOLERANCE).unwrap_err().reason, Reason::Lengths);
 }
 
 /// What any solver of the exported program finds as its least value is the energy in the summary.
@@ -235,12 +235,12 @@ fn the_optimum_of_the_program_is_the_energy() {
     let load = Function::from_fn(|x, _| x - 15.0);
     let problem =
         ContactProblem::builder().tension(1.0, 3.0).load(load, 10.0).height(height).build().unwrap();
-    let d = Discretization::new(&problem, mesh).unwrap();
+    let d = PairDiscretization::new(&problem, mesh).unwrap();
     let qp = contact_qp(&d);
     let options = QpOptions { tolerance: 1e-12, ..QpOptions::default() };
     let optimum = QpBackend::solve(&mut Clarabel, &qp.nondimensional(), &options).unwrap();
     let x: Vec<f64> = optimum.x.iter().map(|z| qp.primal_scale() * z).collect();
-    let solution = certify(&d, ActiveSet.solve(&d, &SolverOptions::default()).unwrap(), 1e-8).unwrap();
+    let solution = certify_pair(&d, ActiveSet.solve(&d, &SolverOptions::default()).unwrap(), 1e-8).unwrap();
     let defect = |value: f64| (value / solution.energy() - 1.0).abs();
     // The energy is stationary at the optimum: its error is the square of the solver's.
     assert!(defect(qp.objective(&x)) < 1e-9, "{:e}", defect(qp.objective(&x)));

@@ -20,7 +20,7 @@ fn height() -> Function {
 #[test]
 fn unknowns_are_the_interior_vertices_in_order() {
     let mesh = square_without(5, |i, j| i == 1 && j == 2);
-    let d = Discretization::new(&problem(1.0, 1.0, height()), mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem(1.0, 1.0, height()), mesh.clone()).unwrap();
     let expected: Vec<usize> = (0..36).filter(|&a| mesh.kind()[a] == VertexKind::Interior).collect();
     assert_eq!(d.interior(), expected);
     assert_eq!(d.interior().len(), 16 - 4);
@@ -34,7 +34,7 @@ fn unknowns_are_the_interior_vertices_in_order() {
 #[test]
 fn k_ii_is_k_on_the_unknowns() {
     let mesh = irregular(5);
-    let d = Discretization::new(&problem(1.0, 1.0, 0.0), mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem(1.0, 1.0, 0.0), mesh.clone()).unwrap();
     let (k, k_ii) = (d.stiffness(), d.interior_stiffness());
     assert_eq!(k_ii.shape(), (16, 16));
     for (row, &a) in d.interior().iter().enumerate() {
@@ -59,7 +59,7 @@ fn principal_submatrices_of_nothing_and_of_everything() {
 #[test]
 fn dual_areas_fill_the_domain_and_loads_are_those_of_the_membranes() {
     for mesh in [irregular(6), l_shape(1.0, 3, Pattern::Crossed).unwrap()] {
-        let d = Discretization::new(&problem(-3.0, 5.0, 0.0), mesh.clone()).unwrap();
+        let d = PairDiscretization::new(&problem(-3.0, 5.0, 0.0), mesh.clone()).unwrap();
         assert!((d.dual_area().iter().sum::<f64>() - mesh.area()).abs() < ROUNDING);
         assert!(d.dual_area().iter().all(|&area| area > 0.0));
         for (load, f) in d.load().iter().zip([-3.0, 5.0]) {
@@ -69,7 +69,7 @@ fn dual_areas_fill_the_domain_and_loads_are_those_of_the_membranes() {
     }
     // An inner vertex of right-angled cells has one cell's area, a corner of a square a third or a sixth.
     let mesh = square(2);
-    let d = Discretization::new(&problem(0.0, 0.0, 0.0), mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem(0.0, 0.0, 0.0), mesh.clone()).unwrap();
     let expected = [2.0, 3.0, 1.0, 3.0, 6.0, 3.0, 1.0, 3.0, 2.0].map(|triangles| triangles * 0.125 / 3.0);
     assert!(d.dual_area().iter().zip(expected).all(|(found, expected)| (found - expected).abs() < ROUNDING));
 }
@@ -78,7 +78,7 @@ fn dual_areas_fill_the_domain_and_loads_are_those_of_the_membranes() {
 fn vectors_over_vertices_have_zeros_at_unused_ones() {
     let points = [square(3).points(), &[[0.4, 0.4]]].concat();
     let mesh = Mesh::new(points, square(3).triangles().to_vec()).unwrap();
-    let d = Discretization::new(&problem(1.0, 1.0, height()), mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem(1.0, 1.0, height()), mesh.clone()).unwrap();
     assert_eq!([d.height()[16], d.dual_area()[16], d.load()[0][16], d.load()[1][16]], [0.0; 4]);
     assert_eq!(d.interior().len(), 4);
     assert_eq!(d.extend(&[1.0; 4], |_| 2.0)[16], 0.0);
@@ -89,7 +89,7 @@ fn vectors_over_vertices_have_zeros_at_unused_ones() {
 #[test]
 fn imbalance_of_an_exact_solution_is_rounding() {
     let mesh = square(8);
-    let d = Discretization::new(&problem(-4.0, -1.0, 0.0), mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem(-4.0, -1.0, 0.0), mesh.clone()).unwrap();
     let u: Vec<f64> = mesh.points().iter().map(|&[x, _]| x * x).collect();
     for membrane in 0..2 {
         for (&a, &whole) in d.interior().iter().zip(&d.imbalance(membrane, &u)) {
@@ -107,7 +107,7 @@ fn imbalance_of_an_exact_solution_is_rounding() {
 #[test]
 fn the_terms_of_a_balance_are_sums_of_sizes() {
     let mesh = square(2);
-    let d = Discretization::new(&problem(-4.0, 1.0, 0.0), mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem(-4.0, 1.0, 0.0), mesh.clone()).unwrap();
     // At the centre K has 4 and four times -1: 2 (4 * 3 + 4 * 5) + 4 / 4.
     let u = vec![-5.0, -5.0, -5.0, -5.0, 3.0, 5.0, 5.0, 5.0, 5.0];
     let terms = |lower: &[f64]| d.balance(d.interior()[0], [&u, lower])[0].terms;
@@ -121,7 +121,7 @@ fn the_terms_of_a_balance_are_sums_of_sizes() {
 #[test]
 fn extend_takes_unknowns_and_boundary_values() {
     let mesh = square(2);
-    let d = Discretization::new(&problem(0.0, 0.0, 0.0), mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem(0.0, 0.0, 0.0), mesh.clone()).unwrap();
     let found = d.extend(&[7.0], |a| a as f64);
     assert_eq!(found, [0.0, 1.0, 2.0, 3.0, 7.0, 5.0, 6.0, 7.0, 8.0]);
 }
@@ -130,7 +130,7 @@ fn extend_takes_unknowns_and_boundary_values() {
 fn scales_follow_their_formulas() {
     let scales = |f1: f64, f2: f64, g: Function| {
         let mesh = rectangle([0.0, 0.0], [4.0, 2.0], [8, 4], Pattern::Right).unwrap();
-        Discretization::new(&problem(f1, f2, g), mesh.clone()).unwrap().scales()
+        PairDiscretization::new(&problem(f1, f2, g), mesh.clone()).unwrap().scales()
     };
     let close = |found: Scales, [displacement, force_density]: [f64; 2]| {
         let near = |x: f64, y: f64| (x - y).abs() < ROUNDING * y;
@@ -178,8 +178,8 @@ proptest! {
         let [l, f] = [length, force].map(|exponent| f64::from(exponent).exp2());
         let points = mesh.points().iter().map(|point| point.map(|x| l * x)).collect();
         let scaled_mesh = Mesh::new(points, mesh.triangles().to_vec()).unwrap();
-        let original = Discretization::new(&in_units(&mesh, 0, 0), mesh.clone()).unwrap();
-        let scaled = Discretization::new(&in_units(&scaled_mesh, length, force), scaled_mesh.clone()).unwrap();
+        let original = PairDiscretization::new(&in_units(&mesh, 0, 0), mesh.clone()).unwrap();
+        let scaled = PairDiscretization::new(&in_units(&scaled_mesh, length, force), scaled_mesh.clone()).unwrap();
 
         let times = |values: &[f64], unit: f64| values.iter().map(|value| unit * value).collect::<Vec<_>>();
         prop_assert_eq!(scaled.stiffness(), original.stiffness());
@@ -199,7 +199,7 @@ proptest! {
 #[test]
 fn heights_below_zero_and_loads_without_a_value_are_refused() {
     let mesh = square(4);
-    let new = |problem: &ContactProblem| Discretization::new(problem, mesh.clone()).map(|_| ());
+    let new = |problem: &ContactProblem| PairDiscretization::new(problem, mesh.clone()).map(|_| ());
     let fixed = problem(1.0, 1.0, 0.5);
     assert_eq!(new(&fixed), Ok(()));
 
@@ -214,17 +214,17 @@ fn heights_below_zero_and_loads_without_a_value_are_refused() {
         "height g is -0.5 at the boundary vertex 0 (0, 0): it must be finite and >= 0 on the whole boundary (where a formula is zero up to rounding, write max(0, ...))"
     );
     let tilted = Function::from_fn(|x, y| 0.5 - x * y);
-    let expected = DiscretizationError::Height { vertex: 19, point: [1.0, 0.75], value: -0.25 };
+    let expected = PairError::Height { vertex: 19, point: [1.0, 0.75], value: -0.25 };
     assert_eq!(new(&problem(1.0, 1.0, tilted)), Err(expected));
     for value in [f64::NAN, f64::INFINITY] {
         let g = Function::from_fn(move |x, _| if x == 1.0 { value } else { 0.0 });
-        assert!(matches!(new(&problem(1.0, 1.0, g)), Err(DiscretizationError::Height { vertex: 4, .. })));
+        assert!(matches!(new(&problem(1.0, 1.0, g)), Err(PairError::Height { vertex: 4, .. })));
     }
 
     let hole = || Function::from_fn(|x, y| if x > 0.5 { f64::NAN } else { y });
     for (membrane, data) in [(1, problem(hole(), 1.0, 0.5)), (2, problem(1.0, hole(), 0.5))] {
         let error = new(&data).unwrap_err();
-        assert!(matches!(error, DiscretizationError::Load { membrane: found, .. } if found == membrane));
+        assert!(matches!(error, PairError::Load { membrane: found, .. } if found == membrane));
         let message = error.to_string();
         assert!(message.starts_with(&format!("load f{membrane} is NaN at the point (0.6")), "{message}");
     }
@@ -236,7 +236,7 @@ fn sizes_out_of_range_are_refused() {
     let mesh = square(4);
     let message = |mu: f64, f: Function, g: f64| {
         let problem = ContactProblem::builder().tension(mu, 1.0).load(f, 0.0).height(g).build().unwrap();
-        Discretization::new(&problem, mesh.clone()).map(|_| ()).map_err(|error| error.to_string())
+        PairDiscretization::new(&problem, mesh.clone()).map(|_| ()).map_err(|error| error.to_string())
     };
     assert_eq!(message(1.0, 1.0.into(), 1.0), Ok(()));
     assert_eq!(message(1e30, 1e30.into(), 1.0), Ok(()));
@@ -250,8 +250,8 @@ fn sizes_out_of_range_are_refused() {
     let large = rectangle([-1e6, -1e6], [1e6, 1e6], [1, 1], Pattern::Crossed).unwrap();
     let alternating = Function::from_fn(|x, y| if x.abs() > y.abs() { 1.7e308 } else { -1.7e308 });
     let problem = ContactProblem::builder().load(alternating, 0.0).build().unwrap();
-    let error = Discretization::new(&problem, large.clone()).map(|_| ()).unwrap_err();
-    assert!(matches!(error, DiscretizationError::OutOfRange { value: f64::INFINITY, .. }), "{error}");
+    let error = PairDiscretization::new(&problem, large.clone()).map(|_| ()).unwrap_err();
+    assert!(matches!(error, PairError::OutOfRange { value: f64::INFINITY, .. }), "{error}");
 }
 
 /// What the quadrature has not met cannot be put right by other units.
@@ -260,7 +260,7 @@ fn a_load_that_the_quadrature_misses_is_named() {
     let message = |f2: &str| {
         let load: crate::problem::Expression = f2.parse().unwrap();
         let problem = ContactProblem::builder().load(0.0, load).build().unwrap();
-        Discretization::new(&problem, square(32)).map(|_| ()).map_err(|error| error.to_string())
+        PairDiscretization::new(&problem, square(32)).map(|_| ()).map_err(|error| error.to_string())
     };
     // Of this spike nothing but its foot of 1e-50 lies at the points.
     let spike = "1000000*exp(-((x-0.53)^2+(y-0.52)^2)/0.0000001)";
@@ -270,14 +270,14 @@ fn a_load_that_the_quadrature_misses_is_named() {
     assert_eq!(message(&format!("1e-3 + {spike}")), Ok(()));
     // A constant that is as small is in units that are too large.
     let problem = ContactProblem::builder().load(0.0, 1e-300).build().unwrap();
-    let error = Discretization::new(&problem, square(2)).map(|_| ()).unwrap_err();
-    assert!(matches!(error, DiscretizationError::OutOfRange { .. }));
+    let error = PairDiscretization::new(&problem, square(2)).map(|_| ()).unwrap_err();
+    assert!(matches!(error, PairError::OutOfRange { .. }));
 }
 
 #[test]
 fn a_height_that_fails_says_why() {
     let g = Function::try_from_fn(|_, _, _| Err("no connection"));
-    let error = Discretization::new(&problem(1.0, 1.0, g), square(2)).map(|_| ()).unwrap_err();
+    let error = PairDiscretization::new(&problem(1.0, 1.0, g), square(2)).map(|_| ()).unwrap_err();
     assert_eq!(error.to_string(), "height g cannot be evaluated: no connection");
 }
 
@@ -287,7 +287,7 @@ fn the_quadrature_difference_is_one_of_the_energy_norm() {
     let difference = |mu2: f64| {
         let wave = Function::from_fn(|x, y| (40.0 * x).sin() * (50.0 * y).cos());
         let problem = ContactProblem::builder().tension(1.0, mu2).load(-1.0, wave).build().unwrap();
-        Discretization::new(&problem, square(8)).unwrap().quadrature_difference()
+        PairDiscretization::new(&problem, square(8)).unwrap().quadrature_difference()
     };
     let [first, second] = difference(1.0);
     assert!(first == 0.0 && second > 0.0);

@@ -28,8 +28,8 @@ use trace::Trace;
 pub use warning::LoadWarning;
 
 use super::MeasureError;
-use crate::action::{Action, ContactSolution, extend_to_boundary};
-use crate::discretization::{Discretization, Displacement};
+use crate::action::{Action, PairSolution, extend_to_boundary};
+use crate::discretization::{Displacement, PairDiscretization};
 use crate::flux::WedgeFluxes;
 use crate::geometry::friedrichs;
 use crate::problem::{ContactProblem, Domain};
@@ -55,7 +55,7 @@ pub struct ErrorBound {
     /// square of the bound. Shape: `triangles`.
     pub indicators: Vec<f64>,
     /// By how much the bound would grow at most, about, by what a second quadrature rule finds of each load; see
-    /// [`Discretization::quadrature_difference`]. Unit: square root of an energy.
+    /// [`PairDiscretization::quadrature_difference`]. Unit: square root of an energy.
     pub quadrature_difference: Vec<f64>,
     /// The loads of which the quadrature may know too little for the bound to hold.
     pub warnings: Vec<LoadWarning>,
@@ -100,14 +100,14 @@ impl ErrorBound {
     pub fn new(
         problem: &ContactProblem,
         domain: Option<&Domain>,
-        d: &Discretization,
+        d: &PairDiscretization,
         displacement: &Displacement,
     ) -> Result<Self, MeasureError> {
         ErrorBounds::new(problem, domain, d).of_displacement(displacement)
     }
 
     fn from_sums(
-        d: &Discretization,
+        d: &PairDiscretization,
         sums: &Sums,
         friedrichs: f64,
         rest_sq: [f64; 2],
@@ -154,13 +154,13 @@ impl ErrorBound {
 pub struct ErrorBounds<'a> {
     problem: &'a ContactProblem,
     domain: Option<&'a Domain>,
-    d: &'a Discretization,
+    d: &'a PairDiscretization,
     trace: OnceLock<Trace<'a>>,
 }
 
 impl<'a> ErrorBounds<'a> {
     /// For pairs on `d`, the discretization of `problem`; `domain` as in [`ErrorBound::new`].
-    pub fn new(problem: &'a ContactProblem, domain: Option<&'a Domain>, d: &'a Discretization) -> Self {
+    pub fn new(problem: &'a ContactProblem, domain: Option<&'a Domain>, d: &'a PairDiscretization) -> Self {
         Self { problem, domain, d, trace: OnceLock::new() }
     }
 
@@ -180,7 +180,7 @@ impl<'a> ErrorBounds<'a> {
     ///
     /// # Errors
     /// [`MeasureError::OtherMesh`] when it is the solution on another mesh, and those of [`ErrorBound::new`].
-    pub fn of_solution(&self, solution: &ContactSolution) -> Result<ErrorBound, MeasureError> {
+    pub fn of_solution(&self, solution: &PairSolution) -> Result<ErrorBound, MeasureError> {
         MeasureError::check(self.d, solution.displacement())?;
         let seen = Action::recover(self.d, solution.displacement());
         self.with_action(solution.displacement(), &seen, solution.lambda().to_vec())
@@ -207,7 +207,7 @@ impl<'a> ErrorBounds<'a> {
 }
 
 /// The recovered action where the membranes seem to touch, cut off at zero: over vertices.
-fn likely_action(d: &Discretization, [u1, u2]: &Displacement, seen: &[Action]) -> Vec<f64> {
+fn likely_action(d: &PairDiscretization, [u1, u2]: &Displacement, seen: &[Action]) -> Vec<f64> {
     let scales = d.scales();
     let at = |(&a, action): (&usize, &Action)| {
         // Where there is a gap, an action would cost its product with the gap; rounding of a large gap is none.
@@ -220,7 +220,7 @@ fn likely_action(d: &Discretization, [u1, u2]: &Displacement, seen: &[Action]) -
 }
 
 /// `||rho_i||^2`, where `rho_i` is on `D_a` the action that membrane `i` sees, less that of the bound.
-fn rest_sq(d: &Discretization, seen: &[Action], action: &[f64]) -> [f64; 2] {
+fn rest_sq(d: &PairDiscretization, seen: &[Action], action: &[f64]) -> [f64; 2] {
     let mut rest_sq = [0.0; 2];
     for (&a, Action { from_membrane, .. }) in d.interior().iter().zip(seen) {
         (0..2).for_each(|i| rest_sq[i] += d.dual_area()[a] * (from_membrane[i] - action[a]).powi(2));

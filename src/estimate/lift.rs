@@ -2,7 +2,7 @@
 
 use super::MeasureError;
 use super::spaces::Spaces;
-use crate::discretization::Discretization;
+use crate::discretization::PairDiscretization;
 use crate::fem::CutRule;
 use crate::geometry::twice_signed_area;
 use crate::mesh::{Mesh, SubTriangulation};
@@ -42,7 +42,7 @@ impl DualNorm {
 /// The norm of `rho(t, point)`, where `t` is the triangle of `S_h` that contains the point, with the lift on `S_h` refined
 /// `refinements >= 1` times and once less.
 pub(super) fn dual_norm(
-    d: &Discretization,
+    d: &PairDiscretization,
     sub: &SubTriangulation,
     rule: &CutRule,
     refinements: usize,

@@ -2,8 +2,8 @@
 
 use super::MeasureError;
 use super::lift::{DualNorm, dual_norm};
-use crate::action::ContactSolution;
-use crate::discretization::{Discretization, Displacement};
+use crate::action::PairSolution;
+use crate::discretization::{Displacement, PairDiscretization};
 use crate::fem::{CutRule, gradient};
 use crate::mesh::{Mesh, SubTriangulation, VertexKind};
 use crate::parallel::blocks_of;
@@ -71,8 +71,8 @@ impl ErrorNorms {
     /// # Errors
     /// [`MeasureError`] when the solution is not one of `d`, or the lift cannot be found.
     pub fn new(
-        d: &Discretization,
-        solution: &ContactSolution,
+        d: &PairDiscretization,
+        solution: &PairSolution,
         exact: &ExactSolution,
     ) -> Result<Self, MeasureError> {
         let fields = Fields { displacement: solution.displacement(), lambda: solution.lambda() };
@@ -81,7 +81,7 @@ impl ErrorNorms {
 
     /// The norms for any displacements and action.
     pub(super) fn of_fields(
-        d: &Discretization,
+        d: &PairDiscretization,
         fields: Fields,
         contact_area: f64,
         rule: &CutRule,
@@ -115,7 +115,7 @@ impl ErrorNorms {
 /// # Errors
 /// [`MeasureError`] when the displacements are not over the vertices, or the triangles cannot be divided.
 pub fn energy_error(
-    d: &Discretization,
+    d: &PairDiscretization,
     displacement: &Displacement,
     exact: &ExactSolution,
 ) -> Result<f64, MeasureError> {

@@ -1,7 +1,7 @@
 //! The residual estimator, to compare the bound with.
 
 use super::MeasureError;
-use crate::discretization::{Discretization, Displacement};
+use crate::discretization::{Displacement, PairDiscretization};
 use crate::fem::gradient;
 use crate::geometry::distance_sq;
 use crate::mesh::HalfEdges;
@@ -20,7 +20,7 @@ use crate::mesh::HalfEdges;
 /// # Errors
 /// [`MeasureError::OtherMesh`] when the vectors are not over the vertices.
 pub fn residual_indicators(
-    d: &Discretization,
+    d: &PairDiscretization,
     displacement: &Displacement,
     lambda: &[f64],
 ) -> Result<Vec<f64>, MeasureError> {
@@ -68,7 +68,7 @@ mod tests {
         let points = vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
         let mesh = Mesh::new(points, vec![[0, 1, 2], [0, 2, 3]]).unwrap();
         let problem = ContactProblem::builder().tension(2.0, 1.0).load(3.0, 0.0).build().unwrap();
-        let d = Discretization::new(&problem, mesh.clone()).unwrap();
+        let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
         let displacement = [vec![0.0, 1.0, 0.0, 0.0], vec![0.0; 4]];
         let found = residual_indicators(&d, &displacement, &[0.0; 4]).unwrap();
         // h_K^2 = 2, |K| = 1/2; the jump of the slopes is (1, -1), the edge has the length sqrt 2.
@@ -85,7 +85,7 @@ mod tests {
         let problem = problem(&exact);
         let ratio = |cells: usize| {
             let mesh = mesh(&exact.domain(), cells);
-            let d = Discretization::new(&problem, mesh.clone()).unwrap();
+            let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
             let solution = solve(&d);
             let indicators = residual_indicators(&d, solution.displacement(), solution.lambda());
             let estimate = indicators.unwrap().iter().sum::<f64>().sqrt();

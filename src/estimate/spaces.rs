@@ -1,7 +1,7 @@
 //! The P1 spaces with zero boundary values on `T_h`, `S_h` and its uniform refinements: each contains the one before.
 
 use super::MeasureError;
-use crate::discretization::Discretization;
+use crate::discretization::PairDiscretization;
 use crate::fem::stiffness;
 use crate::mesh::{Mesh, Refinement, SubTriangulation};
 use crate::multigrid::hierarchy::{Genealogy, Hierarchy, Mean, inside};
@@ -15,7 +15,7 @@ pub(super) struct Spaces {
 impl Spaces {
     /// Returns the spaces and the finest mesh, `S_h` refined `refinements` times.
     pub(super) fn new(
-        d: &Discretization,
+        d: &PairDiscretization,
         sub: &SubTriangulation,
         refinements: usize,
     ) -> Result<(Self, Mesh), MeasureError> {

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use super::norms::{Fields, cut_rule};
 use super::*;
-use crate::action::{ContactSolution, certify};
-use crate::discretization::{Discretization, Displacement};
+use crate::action::{PairSolution, certify_pair};
+use crate::discretization::{Displacement, PairDiscretization};
 use crate::fem::CutRule;
 use crate::mesh::samples::irregular;
 use crate::mesh::{Mesh, Pattern, disk, l_shape, rectangle};
@@ -35,13 +35,13 @@ pub(super) fn problem(exact: &ExactSolution) -> ContactProblem {
     ContactProblem::builder().tension(mu1, mu2).load(f1, f2).height(exact.height_function()).build().unwrap()
 }
 
-pub(super) fn solve(d: &Discretization) -> ContactSolution {
-    certify(d, ActiveSet.solve(d, &SolverOptions::default()).unwrap(), 1e-8).unwrap()
+pub(super) fn solve(d: &PairDiscretization) -> PairSolution {
+    certify_pair(d, ActiveSet.solve(d, &SolverOptions::default()).unwrap(), 1e-8).unwrap()
 }
 
 fn measure(exact: &ExactSolution, mesh: &Mesh) -> ErrorNorms {
     let problem = problem(exact);
-    let d = Discretization::new(&problem, mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
     ErrorNorms::new(&d, &solve(&d), exact).unwrap()
 }
 
@@ -137,7 +137,7 @@ fn an_action_of_the_wrong_sign_or_displacements_exchanged_do_not_converge() {
     let problem = problem(&exact);
     let norms = [16, 32].map(|cells| {
         let mesh = mesh(&exact.domain(), cells);
-        let d = Discretization::new(&problem, mesh.clone()).unwrap();
+        let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
         let solution = solve(&d);
         let [u1, u2] = solution.displacement().clone();
         let flipped: Vec<f64> = solution.lambda().iter().map(|lambda| -lambda).collect();
@@ -172,7 +172,7 @@ fn the_quadrature_resolves_the_free_boundary_and_says_how_well() {
     let exact = exact(Case::Circle, &[]);
     let mesh = irregular(8);
     let problem = problem(&exact);
-    let d = Discretization::new(&problem, mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
     let solution = solve(&d);
     let measure = |rule: &CutRule| {
         let fields = Fields { displacement: solution.displacement(), lambda: solution.lambda() };
@@ -210,7 +210,7 @@ fn a_solution_of_another_mesh_is_refused() {
     let exact = exact(Case::Circle, &[]);
     let problem = problem(&exact);
     let meshes = [4, 5].map(|cells| mesh(&exact.domain(), cells));
-    let [d, other] = [0, 1].map(|k| Discretization::new(&problem, meshes[k].clone()).unwrap());
+    let [d, other] = [0, 1].map(|k| PairDiscretization::new(&problem, meshes[k].clone()).unwrap());
     let error = ErrorNorms::new(&other, &solve(&d), &exact).unwrap_err();
     assert_eq!(error, MeasureError::OtherMesh { values: 25, vertices: 36 });
     assert!(error.to_string().contains("25 values") && ErrorNorms::new(&d, &solve(&d), &exact).is_ok());

@@ -3,14 +3,14 @@
 use super::Reconstruction;
 use super::fan::{Fan, fans};
 use super::field::{Flux, constant_outward, inner_product, through};
-use crate::discretization::{Discretization, Displacement};
+use crate::discretization::{Displacement, PairDiscretization};
 use crate::fem::gradient;
 use crate::mesh::{Mesh, SubTriangulation};
 
 /// Reconstructs fluxes from displacements: what all reconstructions on one mesh share.
 #[derive(Debug, Clone)]
 pub struct Reconstructor<'a> {
-    pub(super) d: &'a Discretization,
+    pub(super) d: &'a PairDiscretization,
     pub(super) sub: &'a SubTriangulation,
     pub(super) load: [Vec<[f64; 3]>; 2],
     fans: Vec<Fan>,
@@ -22,7 +22,7 @@ impl<'a> Reconstructor<'a> {
     ///
     /// # Panics
     /// When `sub` or `load` are not of the mesh of `d`.
-    pub fn new(d: &'a Discretization, sub: &'a SubTriangulation, load: [Vec<[f64; 3]>; 2]) -> Self {
+    pub fn new(d: &'a PairDiscretization, sub: &'a SubTriangulation, load: [Vec<[f64; 3]>; 2]) -> Self {
         let triangles = d.mesh().triangles().len();
         assert_eq!(sub.mesh().triangles().len(), 6 * triangles, "six sub-triangles a triangle");
         assert!(load.iter().all(|load| load.len() == triangles), "loads are over triangles");
@@ -147,7 +147,7 @@ fn averaged(jumps: &[f64]) -> Vec<Change> {
 ///
 /// # Panics
 /// When `u` is not over the vertices.
-pub fn discrete_flux(d: &Discretization, membrane: usize, u: &[f64]) -> Vec<[f64; 2]> {
+pub fn discrete_flux(d: &PairDiscretization, membrane: usize, u: &[f64]) -> Vec<[f64; 2]> {
     assert_eq!(u.len(), d.mesh().points().len(), "displacements are over vertices");
     let mu = d.tension()[membrane];
     (0..d.mesh().triangles().len()).map(|k| flux_on(d.mesh(), k, mu, u)).collect()

@@ -7,7 +7,7 @@
 use super::fan::{Walk, wedge_of};
 use super::field::through;
 use super::reconstruct::flux_on;
-use crate::discretization::{Discretization, Displacement};
+use crate::discretization::{Displacement, PairDiscretization};
 use crate::fem::LoadMoments;
 use crate::mesh::{Mesh, VertexTriangles};
 use crate::parallel::prelude::*;
@@ -90,7 +90,7 @@ impl<'a> WedgeFluxes<'a> {
     /// vertices of the mesh of `d`. Around an interior vertex the action follows from the balance; on the dual cell of a boundary vertex
     /// it may be chosen, and is that of `lambda`, over vertices.
     pub(crate) fn new(
-        d: &'a Discretization,
+        d: &'a PairDiscretization,
         around: &'a VertexTriangles,
         displacement: &Displacement,
         lambda: &'a [f64],

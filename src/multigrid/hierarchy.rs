@@ -23,7 +23,7 @@ pub(crate) use transfer::Transfer;
 
 use sprs::CsMat;
 
-use crate::discretization::Discretization;
+use crate::discretization::PairDiscretization;
 use crate::mesh::{Mesh, VertexKind};
 use crate::parallel::BLOCK;
 use crate::parallel::prelude::*;
@@ -77,13 +77,13 @@ pub(crate) fn inside(mesh: &Mesh) -> Vec<bool> {
 
 impl Hierarchy {
     /// Makes the levels of a discretization.
-    pub(crate) fn new(d: &Discretization) -> Self {
+    pub(crate) fn new(d: &PairDiscretization) -> Self {
         Self::over(d.stiffness(), &inside(d.mesh()), &Genealogy::of(d.mesh()))
     }
 
     /// Likewise, but all levels are algebraic: on stretched triangles coarser meshes are no good, because they are coarser also
     /// along the long sides, where neighbours are hardly coupled.
-    pub(crate) fn algebraic(d: &Discretization) -> Self {
+    pub(crate) fn algebraic(d: &PairDiscretization) -> Self {
         let vertices = d.mesh().points().len();
         Self::over(d.stiffness(), &inside(d.mesh()), &Genealogy::unknown(vertices))
     }

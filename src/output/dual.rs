@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use crate::action::ContactSolution;
+use crate::action::PairSolution;
 use crate::formats::vtk::{Cells, DataArray, Location, VTK_POLYGON, write_grid};
 use crate::mesh::DualMesh;
 
@@ -13,7 +13,7 @@ use crate::mesh::DualMesh;
 ///
 /// # Errors
 /// When writing fails.
-pub fn write_dual_vtu(dual: &DualMesh, solution: &ContactSolution, out: impl Write) -> io::Result<()> {
+pub fn write_dual_vtu(dual: &DualMesh, solution: &PairSolution, out: impl Write) -> io::Result<()> {
     let cells = || (0..dual.vertices().len()).map(|k| dual.cell(k).iter().copied());
     let mut used = vec![false; dual.points().len()];
     cells().flatten().for_each(|point| used[point] = true);
@@ -41,8 +41,8 @@ pub fn write_dual_vtu(dual: &DualMesh, solution: &ContactSolution, out: impl Wri
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::action::certify;
-    use crate::discretization::Discretization;
+    use crate::action::certify_pair;
+    use crate::discretization::PairDiscretization;
     use crate::formats::vtk::samples::{floats, integers, read_array};
     use crate::mesh::{Mesh, SubTriangulation, VertexKind, samples};
     use crate::problem::ContactProblem;
@@ -51,12 +51,12 @@ mod tests {
     /// Areas of cells are sums of a few rounded terms below 1, the total force of a few hundred.
     const ROUNDING: f64 = 1e-12;
 
-    fn written(mesh: &Mesh) -> (ContactSolution, String) {
+    fn written(mesh: &Mesh) -> (PairSolution, String) {
         let problem =
             ContactProblem::builder().tension(1.0, 3.0).load(-15.0, 10.0).height(0.1).build().unwrap();
-        let d = Discretization::new(&problem, mesh.clone()).unwrap();
+        let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
         let candidate = ActiveSet.solve(&d, &SolverOptions::default()).unwrap();
-        let solution = certify(&d, candidate, 1e-8).unwrap();
+        let solution = certify_pair(&d, candidate, 1e-8).unwrap();
         let dual = DualMesh::new(mesh, &SubTriangulation::new(mesh).unwrap());
         let mut file = Vec::new();
         write_dual_vtu(&dual, &solution, &mut file).unwrap();

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use crate::action::ContactSolution;
+use crate::action::PairSolution;
 use crate::flux::Flux;
 use crate::formats::vtk::{Cells, DataArray, Location, VTK_TRIANGLE, write_grid};
 use crate::mesh::SubTriangulation;
@@ -16,7 +16,7 @@ use crate::mesh::SubTriangulation;
 pub fn write_flux_vtu(
     sub: &SubTriangulation,
     [t1, t2]: &[Flux; 2],
-    solution: &ContactSolution,
+    solution: &PairSolution,
     out: impl Write,
 ) -> io::Result<()> {
     let mesh = sub.mesh();
@@ -35,8 +35,8 @@ pub fn write_flux_vtu(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::action::certify;
-    use crate::discretization::Discretization;
+    use crate::action::certify_pair;
+    use crate::discretization::PairDiscretization;
     use crate::fem::element_loads;
     use crate::flux::{Reconstruction, Reconstructor};
     use crate::formats::vtk::samples::{floats, read_array};
@@ -52,9 +52,9 @@ mod tests {
         let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [8, 8], Pattern::Right).unwrap();
         let problem =
             ContactProblem::builder().tension(1.0, 3.0).load(-15.0, 10.0).height(0.1).build().unwrap();
-        let d = Discretization::new(&problem, mesh.clone()).unwrap();
+        let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
         let candidate = ActiveSet.solve(&d, &SolverOptions::default()).unwrap();
-        let solution = certify(&d, candidate, 1e-8).unwrap();
+        let solution = certify_pair(&d, candidate, 1e-8).unwrap();
         let sub = SubTriangulation::new(&mesh).unwrap();
         let loads =
             [0, 1].map(|i| element_loads(&mesh, &problem.as_pair().expect("a pair").load()[i]).unwrap());

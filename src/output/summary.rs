@@ -4,8 +4,8 @@ use std::io::{self, Write};
 
 use serde::Serialize;
 
-use crate::action::{ContactSolution, CutOff, GapSolution, Rejected, Residuals, StackSolution};
-use crate::discretization::{Discretization, StackDiscretization};
+use crate::action::{CutOff, GapSolution, PairSolution, Rejected, Residuals, StackSolution};
+use crate::discretization::{PairDiscretization, StackDiscretization};
 use crate::estimate::{BoundParts, ErrorBound};
 use crate::formats::gmsh::PhysicalGroup;
 use crate::mesh::Mesh;
@@ -178,9 +178,9 @@ impl Summary {
     /// The summary of a run, certified or not.
     pub fn new(
         title: &str,
-        d: &Discretization,
+        d: &PairDiscretization,
         tolerance: f64,
-        result: Result<&ContactSolution, &Rejected>,
+        result: Result<&PairSolution, &Rejected>,
         seconds: Seconds,
         bound: Option<&ErrorBound>,
     ) -> Self {
@@ -192,14 +192,14 @@ impl Summary {
         Self {
             certified: solution.is_some(),
             unknowns: 2 * d.interior().len(),
-            energy: solution.map(ContactSolution::energy),
+            energy: solution.map(PairSolution::energy),
             contact_vertices: solution.map(|s| s.contact().iter().filter(|&&contact| contact).count()),
             pressed_vertices: solution.map(|s| s.lambda().iter().filter(|&&lambda| lambda > 0.0).count()),
-            contact_area: solution.map(ContactSolution::contact_area),
-            contact_area_extended: solution.map(ContactSolution::contact_area_extended),
-            total_force: solution.map(ContactSolution::total_force),
-            total_force_extended: solution.map(ContactSolution::total_force_extended),
-            cut_off: solution.map(ContactSolution::cut_off),
+            contact_area: solution.map(PairSolution::contact_area),
+            contact_area_extended: solution.map(PairSolution::contact_area_extended),
+            total_force: solution.map(PairSolution::total_force),
+            total_force_extended: solution.map(PairSolution::total_force_extended),
+            cut_off: solution.map(PairSolution::cut_off),
             error_bound: bound.map(|bound| bound.total),
             relative_error_bound: bound.and_then(ErrorBound::relative),
             error_parts: bound.map(|bound| bound.parts),

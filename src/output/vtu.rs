@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use crate::action::ContactSolution;
+use crate::action::PairSolution;
 use crate::estimate::ErrorBound;
 use crate::formats::vtk::{Cells, DataArray, Location, VTK_TRIANGLE, write_grid};
 use crate::mesh::Mesh;
@@ -15,7 +15,7 @@ use crate::mesh::Mesh;
 /// When writing fails.
 pub fn write_vtu(
     mesh: &Mesh,
-    solution: &ContactSolution,
+    solution: &PairSolution,
     bound: &ErrorBound,
     out: impl Write,
 ) -> io::Result<()> {
@@ -37,8 +37,8 @@ pub fn write_vtu(
 mod tests {
     use super::super::{Seconds, Summary};
     use super::*;
-    use crate::action::certify;
-    use crate::discretization::Discretization;
+    use crate::action::certify_pair;
+    use crate::discretization::PairDiscretization;
     use crate::estimate::ErrorBounds;
     use crate::formats::vtk::samples::{floats, read_array};
     use crate::mesh::{Pattern, VertexKind, rectangle};
@@ -63,11 +63,11 @@ mod tests {
     fn the_files_the_summary_and_the_picture_have_one_contact_set() {
         let problem = ContactProblem::builder().load(-15.0, 10.0).height(0.2).build().unwrap();
         let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [48; 2], Pattern::Right).unwrap();
-        let d = Discretization::new(&problem, mesh.clone()).unwrap();
+        let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
         for mut solver in solvers() {
             for polish in [true, false] {
                 let options = SolverOptions { polish, ..SolverOptions::default() };
-                let solution = certify(&d, solver.solve(&d, &options).unwrap(), 1e-8).unwrap();
+                let solution = certify_pair(&d, solver.solve(&d, &options).unwrap(), 1e-8).unwrap();
                 let bound = ErrorBounds::new(&problem, None, &d).of_solution(&solution).unwrap();
                 let summary = Summary::new("", &d, 1e-8, Ok(&solution), Seconds::default(), Some(&bound));
                 let mut file = Vec::new();

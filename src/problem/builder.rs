@@ -56,7 +56,7 @@ impl ContactProblemBuilder {
     /// # Errors
     /// A tension that is not positive and finite, a constant load that is not finite, a constant height that is
     /// negative or not finite. Functions of the point are checked where they are evaluated, by
-    /// [`Discretization::new`](crate::discretization::Discretization::new).
+    /// [`PairDiscretization::new`](crate::discretization::PairDiscretization::new).
     pub fn build(self) -> Result<ContactProblem, ProblemError> {
         let Pair { tension: [mu1, mu2], load: [f1, f2], height } = self.0;
         if let Function::Constant(value) = height

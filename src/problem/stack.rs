@@ -120,7 +120,7 @@ impl StackBuilder {
     /// # Errors
     /// No membrane; a tension that is not positive, a foundation that is negative, any number that is not finite. What is
     /// known on a mesh only (functions, regions, curves, the order of heights and obstacles) is checked by
-    /// [`Discretization::new`](crate::discretization::Discretization::new).
+    /// [`PairDiscretization::new`](crate::discretization::PairDiscretization::new).
     pub fn build(self) -> Result<ContactProblem, ProblemError> {
         let Self { membranes, ceiling, floor } = self;
         if membranes.is_empty() {

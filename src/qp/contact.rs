@@ -7,7 +7,7 @@ use sprs::{CsMat, TriMat};
 pub use stack::stack_qp;
 
 use super::QpProblem;
-use crate::discretization::Discretization;
+use crate::discretization::PairDiscretization;
 
 /// (3.4) in the unknowns `x = (u1, u2)` at the interior vertices, boundary values eliminated:
 ///
@@ -22,7 +22,7 @@ use crate::discretization::Discretization;
 /// rows: `P` stays positive definite, and every solver does less work.
 ///
 /// Shapes: with `n` interior vertices, `2 n` variables and `n` constraints.
-pub fn contact_qp(d: &Discretization) -> QpProblem {
+pub fn contact_qp(d: &PairDiscretization) -> QpProblem {
     let n = d.interior().len();
     let q = (0..2).flat_map(|i| linear_term(d, i)).collect();
     let scales = d.scales();
@@ -33,13 +33,13 @@ pub fn contact_qp(d: &Discretization) -> QpProblem {
 }
 
 /// `mu_i K_IB g_B - F_i`, where `g` is zero for membrane 2: the imbalance of displacements that vanish inside.
-fn linear_term(d: &Discretization, i: usize) -> Vec<f64> {
+fn linear_term(d: &PairDiscretization, i: usize) -> Vec<f64> {
     let lift = |a: usize| if i == 0 { d.height()[a] } else { 0.0 };
     d.imbalance(i, &d.extend(&vec![0.0; d.interior().len()], lift))
 }
 
 /// The energy of `g_h` for membrane 1 and zero for membrane 2: that of `x = 0`.
-fn energy_of_lift(d: &Discretization) -> f64 {
+fn energy_of_lift(d: &PairDiscretization) -> f64 {
     let g = d.height();
     let at = |a: usize| (0.5 * d.tension()[0] * d.stiffness_row(a, |b| g[b]) - d.load()[0][a]) * g[a];
     (0..g.len()).filter(|&a| g[a] != 0.0).map(at).sum()

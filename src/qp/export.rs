@@ -5,7 +5,7 @@ use std::io::{self, Seek, Write};
 use sprs::CsMat;
 
 use super::QpProblem;
-use crate::discretization::{Discretization, GapRow, StackDiscretization};
+use crate::discretization::{GapRow, PairDiscretization, StackDiscretization};
 use crate::formats::matrix_market::{write_array, write_coordinates};
 use crate::formats::npz::NpzWriter;
 use crate::formats::qps::Qps;
@@ -26,7 +26,7 @@ use crate::mesh::Mesh;
 ///
 /// # Errors
 /// When writing fails.
-pub fn write_npz(d: &Discretization, qp: &QpProblem, out: impl Write + Seek) -> io::Result<()> {
+pub fn write_npz(d: &PairDiscretization, qp: &QpProblem, out: impl Write + Seek) -> io::Result<()> {
     let mut archive = NpzWriter::deflated(out);
     write_program(&mut archive, qp)?;
     archive.integers("interior", d.interior(), &[d.interior().len()])?;

@@ -13,7 +13,7 @@ use web_time::Instant;
 
 use super::decoupled::Decoupled;
 use super::{Candidate, ContactSolver, SolverError, SolverOptions, Statistics};
-use crate::discretization::{Discretization, Displacement};
+use crate::discretization::{Displacement, PairDiscretization};
 use crate::multigrid::cholesky::NotFactored;
 use crate::qp::{Limits, Status};
 
@@ -35,7 +35,7 @@ impl ContactSolver for ActiveSet {
         "active-set"
     }
 
-    fn solve(&mut self, d: &Discretization, options: &SolverOptions) -> Result<Candidate, SolverError> {
+    fn solve(&mut self, d: &PairDiscretization, options: &SolverOptions) -> Result<Candidate, SolverError> {
         options.check()?;
         let start = Instant::now();
         let limits = options.limits(MAX_STEPS, start);
@@ -71,7 +71,11 @@ pub(super) struct Settled {
 }
 
 /// Solves for the contact set `active`, and repairs it until it is consistent.
-pub(super) fn settle(d: &Discretization, active: Vec<bool>, limits: &Limits) -> Result<Settled, NotFactored> {
+pub(super) fn settle(
+    d: &PairDiscretization,
+    active: Vec<bool>,
+    limits: &Limits,
+) -> Result<Settled, NotFactored> {
     let decoupled = Decoupled::new(d);
     let mut half = gap_half(d, &decoupled)?;
     let sum_load = lifted(d, |a| decoupled.sum_load(a), |b| decoupled.sum_height(b));
@@ -88,13 +92,13 @@ pub(super) fn settle(d: &Discretization, active: Vec<bool>, limits: &Limits) -> 
 }
 
 /// The obstacle half on the unknowns of the discretization.
-fn gap_half<'d>(d: &'d Discretization, decoupled: &Decoupled) -> Result<Obstacle<'d>, NotFactored> {
+fn gap_half<'d>(d: &'d PairDiscretization, decoupled: &Decoupled) -> Result<Obstacle<'d>, NotFactored> {
     let load = lifted(d, |a| decoupled.gap_load(a), |b| d.height()[b]);
     let terms = d.interior().iter().map(|&a| decoupled.gap_load_terms(a)).collect();
     Obstacle::new(d.interior_stiffness(), load, terms, d.scales().displacement)
 }
 
 /// `b - K_IB g` for a `height` that is zero inside.
-fn lifted(d: &Discretization, load: impl Fn(usize) -> f64, height: impl Fn(usize) -> f64) -> Vec<f64> {
+fn lifted(d: &PairDiscretization, load: impl Fn(usize) -> f64, height: impl Fn(usize) -> f64) -> Vec<f64> {
     d.interior().iter().map(|&a| load(a) - d.stiffness_row(a, &height)).collect()
 }

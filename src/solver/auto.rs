@@ -6,7 +6,7 @@ use super::multigrid::PreparedMultigrid;
 use super::{
     ActiveSet, Candidate, ContactSolver, Multigrid, PreparedSolver, SolverError, SolverOptions, Stalled,
 };
-use crate::discretization::Discretization;
+use crate::discretization::PairDiscretization;
 use crate::qp::Status;
 use crate::text::grouped;
 
@@ -36,24 +36,24 @@ impl ContactSolver for Auto {
         "auto"
     }
 
-    fn solve(&mut self, d: &Discretization, options: &SolverOptions) -> Result<Candidate, SolverError> {
+    fn solve(&mut self, d: &PairDiscretization, options: &SolverOptions) -> Result<Candidate, SolverError> {
         PreparedAuto::new(d).solve(options)
     }
 
-    fn prepare<'s>(&'s mut self, d: &'s Discretization) -> Box<dyn PreparedSolver + 's> {
+    fn prepare<'s>(&'s mut self, d: &'s PairDiscretization) -> Box<dyn PreparedSolver + 's> {
         Box::new(PreparedAuto::new(d))
     }
 }
 
 /// The choice for one discretization. A multigrid that has stalled is not tried again.
 struct PreparedAuto<'d> {
-    d: &'d Discretization,
+    d: &'d PairDiscretization,
     /// Or what has stalled.
     multigrid: Result<PreparedMultigrid<'d>, Vec<Stalled>>,
 }
 
 impl<'d> PreparedAuto<'d> {
-    fn new(d: &'d Discretization) -> Self {
+    fn new(d: &'d PairDiscretization) -> Self {
         Self { d, multigrid: Ok(PreparedMultigrid::new(d)) }
     }
 }
@@ -118,7 +118,7 @@ mod tests {
             ContactProblem::builder().tension(1.0, 3.0).load(-1.5e5, 1e5).height(0.1).build().unwrap();
         let choice = |height: f64| {
             let mesh = rectangle([0.0, 0.0], [1.0, height], [64; 2], Pattern::Crossed).unwrap();
-            let d = Discretization::new(&problem, mesh.clone()).unwrap();
+            let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
             let mut auto = Auto;
             let mut prepared = auto.prepare(&d);
             let mut solve = || prepared.solve(&SolverOptions::default()).expect("it runs").statistics;

@@ -1,7 +1,7 @@
 //! What a solver returns, and what it may start from.
 
 use super::statistics::Statistics;
-use crate::discretization::{Discretization, Displacement};
+use crate::discretization::{Displacement, PairDiscretization};
 use crate::qp::Answer;
 
 /// What a solver returns: displacements and multipliers that nobody has checked yet.
@@ -21,7 +21,7 @@ impl Candidate {
     ///
     /// # Panics
     /// When `x` has not two entries for each unknown.
-    pub fn from_answer(d: &Discretization, Answer { x, y }: Answer, statistics: Statistics) -> Self {
+    pub fn from_answer(d: &PairDiscretization, Answer { x, y }: Answer, statistics: Statistics) -> Self {
         assert_eq!(x.len(), 2 * d.interior().len(), "an answer has two displacements for each unknown");
         let (x1, x2) = x.split_at(d.interior().len());
         let displacement = [d.extend(x1, |a| d.height()[a]), d.extend(x2, |_| 0.0)];
@@ -46,13 +46,13 @@ impl From<Candidate> for StartingPoint {
 
 impl StartingPoint {
     /// Whether it has the lengths of this discretization.
-    pub(crate) fn fits(&self, d: &Discretization) -> bool {
+    pub(crate) fn fits(&self, d: &PairDiscretization) -> bool {
         self.displacement.iter().all(|u| u.len() == d.mesh().points().len())
             && self.multiplier.len() == d.interior().len()
     }
 }
 
 /// `x = (u1, u2)` at the interior vertices.
-pub(super) fn unknowns(d: &Discretization, displacement: &Displacement) -> Vec<f64> {
+pub(super) fn unknowns(d: &PairDiscretization, displacement: &Displacement) -> Vec<f64> {
     displacement.iter().flat_map(|u| d.interior().iter().map(|&a| u[a])).collect()
 }

@@ -3,7 +3,7 @@
 use super::candidate::Candidate;
 use super::error::SolverError;
 use super::options::SolverOptions;
-use crate::discretization::Discretization;
+use crate::discretization::PairDiscretization;
 
 /// Anything that solves (3.4): a [`QpBackend`](crate::qp::QpBackend) by way of [`QpSolver`](super::QpSolver), or a method of its own.
 pub trait ContactSolver: Send {
@@ -14,11 +14,11 @@ pub trait ContactSolver: Send {
     ///
     /// # Errors
     /// [`SolverError`] when it cannot run at all.
-    fn solve(&mut self, d: &Discretization, options: &SolverOptions) -> Result<Candidate, SolverError>;
+    fn solve(&mut self, d: &PairDiscretization, options: &SolverOptions) -> Result<Candidate, SolverError>;
 
     /// The solver for one discretization, to be solved more than once: what can be used again is made once. As it is, nothing
     /// is kept.
-    fn prepare<'s>(&'s mut self, d: &'s Discretization) -> Box<dyn PreparedSolver + 's> {
+    fn prepare<'s>(&'s mut self, d: &'s PairDiscretization) -> Box<dyn PreparedSolver + 's> {
         Box::new(Unprepared { solver: self, d })
     }
 }
@@ -35,7 +35,7 @@ pub trait PreparedSolver {
 /// A solver that keeps nothing.
 struct Unprepared<'s, S: ?Sized> {
     solver: &'s mut S,
-    d: &'s Discretization,
+    d: &'s PairDiscretization,
 }
 
 impl<S: ContactSolver + ?Sized> PreparedSolver for Unprepared<'_, S> {

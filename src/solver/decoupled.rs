@@ -7,20 +7,20 @@
 //!
 //! one Poisson problem and one zero-obstacle problem, and back `u1 = (s + mu2 w) / M`, `u2 = (s - mu1 w) / M`.
 
-use crate::discretization::{Discretization, Displacement};
+use crate::discretization::{Displacement, PairDiscretization};
 use crate::mesh::VertexKind;
 use crate::parallel::BLOCK;
 use crate::parallel::prelude::*;
 
 /// The data of the two halves on a discretization, each with the matrix `K`: the gap's divided by `m`.
 pub(crate) struct Decoupled<'d> {
-    d: &'d Discretization,
+    d: &'d PairDiscretization,
     /// `mu1 / M`, `mu2 / M`: fractions, because products of large tensions would overflow.
     share: [f64; 2],
 }
 
 impl<'d> Decoupled<'d> {
-    pub(crate) fn new(d: &'d Discretization) -> Self {
+    pub(crate) fn new(d: &'d PairDiscretization) -> Self {
         let [mu1, mu2] = d.tension();
         Self { d, share: [mu1 / (mu1 + mu2), mu2 / (mu1 + mu2)] }
     }

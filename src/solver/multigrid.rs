@@ -9,7 +9,7 @@ use super::decoupled::Decoupled;
 use super::{
     Candidate, ContactSolver, PreparedSolver, SolverError, SolverOptions, Stalled, StartingPoint, Statistics,
 };
-use crate::discretization::Discretization;
+use crate::discretization::PairDiscretization;
 use crate::multigrid::half::{HalfProblem, MAX_CYCLES, solve};
 use crate::multigrid::hierarchy::Hierarchy;
 use crate::qp::Status;
@@ -34,32 +34,32 @@ impl ContactSolver for Multigrid {
         NAME
     }
 
-    fn solve(&mut self, d: &Discretization, options: &SolverOptions) -> Result<Candidate, SolverError> {
+    fn solve(&mut self, d: &PairDiscretization, options: &SolverOptions) -> Result<Candidate, SolverError> {
         PreparedMultigrid::new(d).solve(options)
     }
 
-    fn prepare<'s>(&'s mut self, d: &'s Discretization) -> Box<dyn PreparedSolver + 's> {
+    fn prepare<'s>(&'s mut self, d: &'s PairDiscretization) -> Box<dyn PreparedSolver + 's> {
         Box::new(PreparedMultigrid::new(d))
     }
 }
 
 /// Multigrid for one discretization, whose levels are made once.
 pub(super) struct PreparedMultigrid<'d> {
-    d: &'d Discretization,
+    d: &'d PairDiscretization,
     hierarchy: Option<Hierarchy>,
     /// Levels that are not tried again: those of the refinements, once it has stalled on them.
     stalled: Vec<Stalled>,
 }
 
 impl<'d> PreparedMultigrid<'d> {
-    pub(super) fn new(d: &'d Discretization) -> Self {
+    pub(super) fn new(d: &'d PairDiscretization) -> Self {
         Self { d, hierarchy: None, stalled: Vec::new() }
     }
 
     /// Solves on the levels that there are, else on those that are made by `levels`; the time limit counts from `start`.
     fn attempt(
         &mut self,
-        levels: fn(&Discretization) -> Hierarchy,
+        levels: fn(&PairDiscretization) -> Hierarchy,
         options: &SolverOptions,
         start: Instant,
     ) -> Result<Candidate, SolverError> {
@@ -95,7 +95,7 @@ impl PreparedSolver for PreparedMultigrid<'_> {
 /// Solves on these levels; the time limit counts from `start`. The seconds in the statistics are left to others.
 fn solve_on(
     hierarchy: &Hierarchy,
-    d: &Discretization,
+    d: &PairDiscretization,
     options: &SolverOptions,
     start: Instant,
 ) -> Result<Candidate, SolverError> {
@@ -127,7 +127,7 @@ fn solve_on(
 fn halves(
     hierarchy: &Hierarchy,
     decoupled: &Decoupled,
-    d: &Discretization,
+    d: &PairDiscretization,
     options: &SolverOptions,
 ) -> [HalfProblem; 2] {
     let force = SHARE * options.tolerance * d.scales().force_density;

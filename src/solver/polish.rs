@@ -10,7 +10,7 @@ use super::SolverOptions;
 use super::active_set::{guess, settle};
 use super::candidate::{Candidate, unknowns};
 use super::statistics::PolishReport;
-use crate::discretization::{Discretization, Displacement};
+use crate::discretization::{Displacement, PairDiscretization};
 use crate::qp::{KktResiduals, Limits, QpProblem};
 
 /// Linear solves for the gap. An accurate answer needs one to four; where the membranes touch without pushing, the contact
@@ -20,7 +20,7 @@ const MAX_STEPS: usize = 100;
 /// Polishes the candidate and keeps the result if its KKT residuals are smaller. `None` when a linear system cannot be
 /// solved, or the solve has to stop.
 pub(super) fn polish(
-    d: &Discretization,
+    d: &PairDiscretization,
     qp: &QpProblem,
     candidate: &mut Candidate,
     options: &SolverOptions,

@@ -5,7 +5,7 @@ use web_time::Instant;
 use super::candidate::unknowns;
 use super::polish::polish;
 use super::{Candidate, ContactSolver, SolverError, SolverOptions, Statistics};
-use crate::discretization::Discretization;
+use crate::discretization::PairDiscretization;
 use crate::qp::{
     Answer, BackendError, QpBackend, QpOptions, QpProblem, QpSolution, Status, TimeLimit, contact_qp,
 };
@@ -54,7 +54,7 @@ impl ContactSolver for QpSolver {
         self.backend.name()
     }
 
-    fn solve(&mut self, d: &Discretization, options: &SolverOptions) -> Result<Candidate, SolverError> {
+    fn solve(&mut self, d: &PairDiscretization, options: &SolverOptions) -> Result<Candidate, SolverError> {
         options.check()?;
         let start = Instant::now();
         let qp = contact_qp(d);

@@ -4,8 +4,8 @@ use thiserror::Error;
 use web_time::Instant;
 
 use super::prolongation::Fields;
-use crate::action::{ContactSolution, Rejected, certify};
-use crate::discretization::Discretization;
+use crate::action::{PairSolution, Rejected, certify_pair};
+use crate::discretization::PairDiscretization;
 use crate::estimate::{ErrorBound, ErrorBounds, MeasureError};
 use crate::problem::{ContactProblem, Domain};
 use crate::solver::{Candidate, ContactSolver, SolverError, SolverOptions};
@@ -50,7 +50,7 @@ impl Tolerance {
 #[derive(Debug, Clone)]
 pub struct Bounded {
     /// The solution.
-    pub solution: ContactSolution,
+    pub solution: PairSolution,
     /// The bound of its energy error.
     pub bound: ErrorBound,
     /// The tolerance within which it is certified.
@@ -82,14 +82,14 @@ pub enum AccuracyError {
 pub fn solve_bounded(
     problem: &ContactProblem,
     domain: Option<&Domain>,
-    d: &Discretization,
+    d: &PairDiscretization,
     solver: &mut dyn ContactSolver,
     options: &SolverOptions,
     tolerance: Tolerance,
 ) -> Result<Bounded, AccuracyError> {
     let bounds = ErrorBounds::new(problem, domain, d);
     let bounded = |candidate: Candidate, tolerance: f64| {
-        let solution = certify(d, candidate, tolerance)
+        let solution = certify_pair(d, candidate, tolerance)
             .map_err(|rejected| AccuracyError::Rejected(rejected, tolerance))?;
         Ok(Bounded::new(&bounds, solution, tolerance)?)
     };
@@ -125,7 +125,7 @@ impl Bounded {
     /// Bounds the error of a solution that is certified within `tolerance`.
     pub(super) fn new(
         bounds: &ErrorBounds,
-        solution: ContactSolution,
+        solution: PairSolution,
         tolerance: f64,
     ) -> Result<Self, MeasureError> {
         let start = Instant::now();
@@ -156,7 +156,7 @@ mod tests {
         let problem =
             ContactProblem::builder().tension(1.0, 3.0).load(-15.0, 10.0).height(0.1).build().unwrap();
         let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [64, 64], Pattern::Right).unwrap();
-        let d = Discretization::new(&problem, mesh.clone()).unwrap();
+        let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
         let options = SolverOptions { polish: false, ..SolverOptions::default() };
         solve_bounded(&problem, None, &d, solver, &options, tolerance).unwrap()
     }

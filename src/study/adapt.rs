@@ -7,8 +7,8 @@ use web_time::Instant;
 use super::accuracy::{Bounded, Tolerance, solve_bounded};
 use super::prolongation::Fields;
 use super::{StudyError, mark};
-use crate::action::{ContactSolution, certify};
-use crate::discretization::{Discretization, Displacement};
+use crate::action::{PairSolution, certify_pair};
+use crate::discretization::{Displacement, PairDiscretization};
 use crate::estimate::{ErrorBound, ErrorBounds, energy_error, residual_indicators};
 use crate::mesh::{Bisection, Mesh};
 use crate::problem::{ContactProblem, Domain, ExactSolution};
@@ -35,7 +35,7 @@ pub struct AdaptiveStudy {
     tolerance: Tolerance,
     marked: Vec<Vec<usize>>,
     /// The current mesh's discretization and solution.
-    last: Option<(Discretization, Bounded)>,
+    last: Option<(PairDiscretization, Bounded)>,
 }
 
 /// One level: a mesh and the error on it. Written as a row of `adapt.csv`.
@@ -141,12 +141,12 @@ impl AdaptiveStudy {
     }
 
     /// The solution on the current mesh and its bound, once there is one.
-    pub fn solution(&self) -> Option<(&ContactSolution, &ErrorBound)> {
+    pub fn solution(&self) -> Option<(&PairSolution, &ErrorBound)> {
         self.last.as_ref().map(|(_, last)| (&last.solution, &last.bound))
     }
 
     /// The discretization that it solves.
-    pub fn discretization(&self) -> Option<&Discretization> {
+    pub fn discretization(&self) -> Option<&PairDiscretization> {
         self.last.as_ref().map(|(d, _)| d)
     }
 
@@ -167,7 +167,7 @@ impl AdaptiveStudy {
         };
         self.last = None;
         let level = self.marked.len();
-        let d = Discretization::new(&self.problem, self.bisection.mesh().clone())?;
+        let d = PairDiscretization::new(&self.problem, self.bisection.mesh().clone())?;
         let warm_start = prolonged.map(|fields| fields.into_start(&d));
         let options = SolverOptions { warm_start, ..self.options.clone() };
         let domain = self.domain.as_ref();
@@ -181,7 +181,7 @@ impl AdaptiveStudy {
 
     fn row(
         &self,
-        d: &Discretization,
+        d: &PairDiscretization,
         bounded: &Bounded,
         solve_seconds: f64,
     ) -> Result<AdaptiveLevel, StudyError> {
@@ -255,9 +255,10 @@ impl AdaptiveStudy {
         if bisection.mesh().points().len() != vertices {
             return Ok(false);
         }
-        let d = Discretization::new(&self.problem, bisection.mesh().clone())?;
+        let d = PairDiscretization::new(&self.problem, bisection.mesh().clone())?;
         let StartingPoint { displacement, multiplier } = Fields { displacement, lambda }.into_start(&d);
-        let Ok(solution) = certify(&d, Candidate { displacement, multiplier, statistics }, tolerance) else {
+        let Ok(solution) = certify_pair(&d, Candidate { displacement, multiplier, statistics }, tolerance)
+        else {
             return Ok(false);
         };
         let bounds = ErrorBounds::new(&self.problem, self.domain.as_ref(), &d);

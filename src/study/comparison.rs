@@ -1,6 +1,6 @@
 //! Solvers side by side on the same discrete problems.
 //!
-//! What is timed goes from a finished [`Discretization`] to the finished certificate: [`ContactSolver::solve`] and
+//! What is timed goes from a finished [`PairDiscretization`] to the finished certificate: [`ContactSolver::solve`] and
 //! [`certify`]. A result that does not certify is a row that says so, never a time to compare. Seconds depend on the
 //! machine; *work units* hardly do: multiples of the time of one product `y = K x` ([`CsrProduct`]), measured in the same
 //! run just before and just after.
@@ -21,8 +21,8 @@ use std::collections::BTreeMap;
 
 use web_time::Instant;
 
-use crate::action::{Residuals, certify};
-use crate::discretization::Discretization;
+use crate::action::{Residuals, certify_pair};
+use crate::discretization::PairDiscretization;
 use crate::qp::{Status, TimeLimit};
 use crate::solver::{ContactSolver, SolverOptions, Statistics};
 
@@ -64,7 +64,7 @@ pub struct Place<'a> {
     /// The number of the mesh: cells along a side, or refinements.
     pub n: usize,
     /// The problem on the mesh.
-    pub discretization: &'a Discretization,
+    pub discretization: &'a PairDiscretization,
 }
 
 impl Comparison {
@@ -135,7 +135,13 @@ impl Comparison {
 }
 
 impl Contestant {
-    fn fastest(&mut self, d: &Discretization, options: &SolverOptions, repeat: usize, blank: &Row) -> Row {
+    fn fastest(
+        &mut self,
+        d: &PairDiscretization,
+        options: &SolverOptions,
+        repeat: usize,
+        blank: &Row,
+    ) -> Row {
         let seconds = |row: &Row| row.total_seconds.unwrap_or(f64::INFINITY);
         let mut fastest = attempt(self.solver.as_mut(), d, options, blank);
         if seconds(&fastest) < LONG {
@@ -175,14 +181,19 @@ fn blank(name: &str, place: &Place) -> Row {
 }
 
 /// One run, timed and judged.
-fn attempt(solver: &mut dyn ContactSolver, d: &Discretization, options: &SolverOptions, blank: &Row) -> Row {
+fn attempt(
+    solver: &mut dyn ContactSolver,
+    d: &PairDiscretization,
+    options: &SolverOptions,
+    blank: &Row,
+) -> Row {
     let start = Instant::now();
     let candidate = match solver.solve(d, options) {
         Ok(candidate) => candidate,
         Err(error) => return Row { status: format!("error: {error}"), ..blank.clone() },
     };
     let solved = start.elapsed().as_secs_f64();
-    let result = certify(d, candidate, options.tolerance);
+    let result = certify_pair(d, candidate, options.tolerance);
     let total = start.elapsed().as_secs_f64();
     let (statistics, residuals, contact): (&Statistics, Option<&Residuals>, _) = match &result {
         Ok(solution) => {

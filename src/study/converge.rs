@@ -7,7 +7,7 @@ use super::LevelErrors;
 use super::accuracy::{AccuracyError, Bounded, Tolerance, solve_bounded};
 use super::prolongation::Fields;
 use crate::action::Rejected;
-use crate::discretization::{Discretization, DiscretizationError};
+use crate::discretization::{PairDiscretization, PairError};
 use crate::estimate::{ErrorNorms, LoadWarning, MeasureError};
 use crate::mesh::{MeshError, MeshFamily};
 use crate::problem::{ContactProblem, ExactSolution, ProblemError};
@@ -40,7 +40,7 @@ pub enum StudyError {
     Mesh(#[from] MeshError),
     /// The problem cannot be posed.
     #[error(transparent)]
-    Discretization(#[from] DiscretizationError),
+    PairDiscretization(#[from] PairError),
     /// The solver cannot run.
     #[error(transparent)]
     Solver(#[from] SolverError),
@@ -147,7 +147,7 @@ impl ConvergenceStudy {
         while self.vertices() < level.vertices {
             self.family.refine()?;
         }
-        let d = Discretization::new(&self.problem, self.family.mesh().clone())?;
+        let d = PairDiscretization::new(&self.problem, self.family.mesh().clone())?;
         Ok(LoadWarning::all(&d, level.bound))
     }
 
@@ -155,7 +155,7 @@ impl ConvergenceStudy {
     /// `measure`; returns its result and the seconds up to there.
     fn on_next_mesh<T>(
         &mut self,
-        measure: impl FnOnce(&ExactSolution, &Discretization, &Bounded, usize) -> Result<T, StudyError>,
+        measure: impl FnOnce(&ExactSolution, &PairDiscretization, &Bounded, usize) -> Result<T, StudyError>,
     ) -> Result<(T, f64), StudyError> {
         let start = Instant::now();
         let level = self.level;
@@ -163,7 +163,7 @@ impl ConvergenceStudy {
             None => None,
             Some(last) => Some(last.prolonged(&self.family.refine()?)),
         };
-        let d = Discretization::new(&self.problem, self.family.mesh().clone())?;
+        let d = PairDiscretization::new(&self.problem, self.family.mesh().clone())?;
         let warm_start = prolonged.map(|fields| fields.into_start(&d));
         let options = SolverOptions { warm_start, ..self.options.clone() };
         let domain = self.exact.domain();

@@ -1,7 +1,7 @@
 //! From the solution on one mesh to a start on the next.
 
-use crate::action::ContactSolution;
-use crate::discretization::{Discretization, Displacement};
+use crate::action::PairSolution;
+use crate::discretization::{Displacement, PairDiscretization};
 use crate::solver::StartingPoint;
 
 /// A solution on its way to a refined mesh: displacements, and the action on the dual cells, over vertices.
@@ -11,8 +11,8 @@ pub(super) struct Fields {
     pub(super) lambda: Vec<f64>,
 }
 
-impl From<&ContactSolution> for Fields {
-    fn from(solution: &ContactSolution) -> Self {
+impl From<&PairSolution> for Fields {
+    fn from(solution: &PairSolution) -> Self {
         Self { displacement: solution.displacement().clone(), lambda: solution.lambda().to_vec() }
     }
 }
@@ -27,7 +27,7 @@ impl Fields {
     }
 
     /// As a point to start from.
-    pub(super) fn into_start(self, d: &Discretization) -> StartingPoint {
+    pub(super) fn into_start(self, d: &PairDiscretization) -> StartingPoint {
         let multiplier = d.interior().iter().map(|&a| self.lambda[a] * d.dual_area()[a]).collect();
         StartingPoint { displacement: self.displacement, multiplier }
     }

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use thiserror::Error;
 
 use super::accuracy::{AccuracyError, Bounded, Tolerance, solve_bounded};
-use crate::action::ContactSolution;
-use crate::discretization::{Discretization, DiscretizationError};
+use crate::action::PairSolution;
+use crate::discretization::{PairDiscretization, PairError};
 use crate::estimate::ErrorBound;
 use crate::mesh::Mesh;
 use crate::problem::ContactProblem;
@@ -16,9 +16,9 @@ use crate::solver::{Auto, SolverOptions};
 #[derive(Debug, Clone)]
 pub struct Solved {
     /// The problem on its mesh.
-    pub discretization: Discretization,
+    pub discretization: PairDiscretization,
     /// Displacements, action and contact set, certified.
-    pub solution: ContactSolution,
+    pub solution: PairSolution,
     /// How far the displacements are from the exact ones at most.
     pub bound: ErrorBound,
 }
@@ -28,7 +28,7 @@ pub struct Solved {
 pub enum SolveError {
     /// The problem cannot be posed on the mesh.
     #[error(transparent)]
-    Discretization(#[from] DiscretizationError),
+    PairDiscretization(#[from] PairError),
     /// It cannot be solved, or not within the tolerance.
     #[error(transparent)]
     Accuracy(#[from] AccuracyError),
@@ -37,7 +37,7 @@ pub enum SolveError {
 /// Solves `problem` on `mesh` by the built-in solver that suits it, certifies the result within `options.tolerance`, and
 /// bounds its error. The boundary of the domain is taken for the polygon that the mesh covers.
 ///
-/// This is [`Discretization::new`], [`Auto`], [`certify`](crate::action::certify) and [`ErrorBound::new`] in one; for another
+/// This is [`PairDiscretization::new`], [`Auto`], [`certify_pair`](crate::action::certify_pair) and [`ErrorBound::new`] in one; for another
 /// solver, or a tolerance that follows the bound, see [`solve_bounded`].
 ///
 /// ```
@@ -58,7 +58,7 @@ pub fn solve(
     mesh: impl Into<Arc<Mesh>>,
     options: &SolverOptions,
 ) -> Result<Solved, SolveError> {
-    let discretization = Discretization::new(problem, mesh)?;
+    let discretization = PairDiscretization::new(problem, mesh)?;
     let tolerance = Tolerance::Fixed(options.tolerance);
     let Bounded { solution, bound, .. } =
         solve_bounded(problem, None, &discretization, &mut Auto, options, tolerance)?;
@@ -87,7 +87,7 @@ mod tests {
 
     #[test]
     fn every_stage_says_what_is_wrong() {
-        assert!(matches!(solved(1e-8, -2.0), Err(SolveError::Discretization(_))));
+        assert!(matches!(solved(1e-8, -2.0), Err(SolveError::PairDiscretization(_))));
         assert!(matches!(solved(2.0, 0.1), Err(SolveError::Accuracy(AccuracyError::Solver(_)))));
     }
 }

@@ -8,7 +8,7 @@ use std::path::Path;
 
 use arbitrary::{Arbitrary, Result as Drawn, Unstructured};
 use membrane_contact::cli::CaseFile;
-use membrane_contact::discretization::Discretization;
+use membrane_contact::discretization::PairDiscretization;
 use membrane_contact::mesh::{Bisection, Mesh, Pattern, polygon, rectangle};
 use membrane_contact::output::read_checkpoint;
 use membrane_contact::problem::{ContactProblem, Expression};
@@ -114,7 +114,7 @@ fn posed_on(mesh: Mesh) {
     if mesh.triangles().len() > FEW {
         return;
     }
-    if let Err(error) = Discretization::new(&problem(), mesh.clone()) {
+    if let Err(error) = PairDiscretization::new(&problem(), mesh.clone()) {
         refused(error);
     }
     if let Err(error) = Bisection::new(mesh).refine(&[0]) {

@@ -1,7 +1,7 @@
 //! Meshes bisected towards a corner: many levels, each of which refines a small part of the one before.
 
-use membrane_contact::action::{ContactSolution, certify};
-use membrane_contact::discretization::Discretization;
+use membrane_contact::action::{PairSolution, certify_pair};
+use membrane_contact::discretization::PairDiscretization;
 use membrane_contact::mesh::{Bisection, Mesh, Pattern, l_shape};
 use membrane_contact::problem::{ContactProblem, Function};
 use membrane_contact::solver::{ActiveSet, ContactSolver, Multigrid, SolverOptions};
@@ -37,10 +37,10 @@ fn problem() -> ContactProblem {
 }
 
 /// By multigrid and by the active set method, certified.
-fn solutions(mesh: &Mesh) -> [ContactSolution; 2] {
-    let d = Discretization::new(&problem(), mesh.clone()).unwrap();
+fn solutions(mesh: &Mesh) -> [PairSolution; 2] {
+    let d = PairDiscretization::new(&problem(), mesh.clone()).unwrap();
     let solvers: [&mut dyn ContactSolver; 2] = [&mut Multigrid, &mut ActiveSet];
-    solvers.map(|solver| certify(&d, solve(solver, &d, true), TOLERANCE).expect("certified"))
+    solvers.map(|solver| certify_pair(&d, solve(solver, &d, true), TOLERANCE).expect("certified"))
 }
 
 #[test]
@@ -57,10 +57,10 @@ fn both_solvers_run_along_the_bisections() {
     }
     let statistics = multigrid.statistics();
     assert!(statistics.iterations <= CYCLES, "{:?} cycles", statistics.level_iterations);
-    let d = Discretization::new(&problem(), mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem(), mesh.clone()).unwrap();
     let options = SolverOptions { max_iterations: Some(TOO_FEW), ..SolverOptions::default() };
     let stopped = Multigrid.solve(&d, &options).expect("it runs");
-    assert!(certify(&d, stopped, TOLERANCE).is_err(), "cycles are needed");
+    assert!(certify_pair(&d, stopped, TOLERANCE).is_err(), "cycles are needed");
     // The answer on the mesh that was bisected is another one.
     let [_, on_coarse] = solutions(&coarse);
     let old = coarse.points().len();

@@ -5,7 +5,7 @@ use std::io::Write;
 use std::path::Path;
 
 use membrane_contact::cli::CaseFile;
-use membrane_contact::discretization::Discretization;
+use membrane_contact::discretization::PairDiscretization;
 use membrane_contact::mesh::{Pattern, rectangle};
 use membrane_contact::qp::{Clarabel, QpBackend, QpOptions, contact_qp};
 use npyz::WriterBuilder;
@@ -38,7 +38,7 @@ cells = 6
 fn solved_elsewhere() -> (Vec<f64>, Vec<f64>) {
     let case = CaseFile::parse("case.toml", CASE, Path::new("case.toml")).expect("a valid case");
     let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [CELLS, CELLS], Pattern::Right).expect("a mesh");
-    let d = Discretization::new(&case.problem, mesh.clone()).expect("valid data");
+    let d = PairDiscretization::new(&case.problem, mesh.clone()).expect("valid data");
     let options = QpOptions { tolerance: 1e-12, ..QpOptions::default() };
     let solution = Clarabel.solve(&contact_qp(&d), &options).expect("it runs");
     (solution.x, solution.y)

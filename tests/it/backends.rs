@@ -3,8 +3,8 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use membrane_contact::action::certify;
-use membrane_contact::discretization::Discretization;
+use membrane_contact::action::certify_pair;
+use membrane_contact::discretization::PairDiscretization;
 use membrane_contact::mesh::{Pattern, rectangle};
 use membrane_contact::problem::Case;
 use membrane_contact::qp::{
@@ -102,7 +102,7 @@ fn every_backend_finds_primal_and_dual_with_our_sign() {
 fn every_backend_says_when_it_stops_early_and_returns_its_iterate() {
     let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [16, 16], Pattern::Right).unwrap();
     let problem = exact(Case::Circle, &[]).problem().unwrap();
-    let qp = contact_qp(&Discretization::new(&problem, mesh.clone()).unwrap()).nondimensional();
+    let qp = contact_qp(&PairDiscretization::new(&problem, mesh.clone()).unwrap()).nondimensional();
     for mut backend in backends() {
         let stopped = QpOptions { max_iterations: Some(3), ..QpOptions::default() };
         let solution = backend.solve(&qp, &stopped).expect("it runs");
@@ -124,7 +124,7 @@ fn every_backend_says_when_it_stops_early_and_returns_its_iterate() {
 fn residuals_follow_the_tolerance() {
     let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [16, 16], Pattern::Right).unwrap();
     let problem = exact(Case::Circle, &[]).problem().unwrap();
-    let qp = contact_qp(&Discretization::new(&problem, mesh.clone()).unwrap()).nondimensional();
+    let qp = contact_qp(&PairDiscretization::new(&problem, mesh.clone()).unwrap()).nondimensional();
     for mut backend in backends() {
         for tolerance in [1e-3, 1e-5, 1e-8] {
             let solution =
@@ -157,7 +157,7 @@ fn programs_without_a_solution_are_never_solved() {
 fn results_and_iterations_are_the_same_in_every_run() {
     let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [16, 16], Pattern::Crossed).unwrap();
     let problem = exact(Case::Circle, &[]).problem().unwrap();
-    let d = Discretization::new(&problem, mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
     for mut solver in solvers() {
         let [first, second] = [(); 2].map(|()| solve(solver.as_mut(), &d, true));
         assert_eq!(first.displacement, second.displacement);
@@ -176,8 +176,8 @@ fn osqp_needs_fewer_iterations_from_a_warm_start() {
     let problem = exact(Case::Circle, &[]).problem().unwrap();
     let nearby = exact(Case::Circle, &[("q", 10.1)]).problem().unwrap();
     let solution =
-        solve(&mut QpSolver::new(Osqp), &Discretization::new(&problem, mesh.clone()).unwrap(), true);
-    let d = Discretization::new(&nearby, mesh.clone()).unwrap();
+        solve(&mut QpSolver::new(Osqp), &PairDiscretization::new(&problem, mesh.clone()).unwrap(), true);
+    let d = PairDiscretization::new(&nearby, mesh.clone()).unwrap();
     let [cold, warm] = [None, Some(solution.into())].map(|warm_start| {
         let options = SolverOptions { warm_start, ..SolverOptions::default() };
         QpSolver::new(Osqp).solve(&d, &options).expect("it runs").statistics.iterations
@@ -190,7 +190,7 @@ fn the_active_set_needs_one_solve_from_its_own_answer_and_few_from_a_nearby_one(
     let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [24, 24], Pattern::Right).unwrap();
     let steps = |parameters: &[(&str, f64)], warm_start: Option<StartingPoint>| {
         let problem = exact(Case::Circle, parameters).problem().unwrap();
-        let d = Discretization::new(&problem, mesh.clone()).unwrap();
+        let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
         let options = SolverOptions { warm_start, ..SolverOptions::default() };
         ActiveSet.solve(&d, &options).expect("it runs")
     };
@@ -207,18 +207,18 @@ fn the_active_set_stopped_early_is_rejected() {
     // Where coarser meshes are known, the contact set that they guess may be exact; 25 cells have none.
     let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [25, 25], Pattern::Right).unwrap();
     let problem = exact(Case::Circle, &[]).problem().unwrap();
-    let d = Discretization::new(&problem, mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
     let options = SolverOptions { max_iterations: Some(1), ..SolverOptions::default() };
     let stopped = ActiveSet.solve(&d, &options).expect("it runs");
     assert_eq!((stopped.statistics.status, stopped.statistics.iterations), (Status::IterationLimit, 1));
-    assert!(certify(&d, stopped, TOLERANCE).is_err());
+    assert!(certify_pair(&d, stopped, TOLERANCE).is_err());
 }
 
 #[test]
 fn options_out_of_range_are_refused() {
     let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [2, 2], Pattern::Right).unwrap();
     let problem = exact(Case::Circle, &[]).problem().unwrap();
-    let d = Discretization::new(&problem, mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
     let with = |options: SolverOptions| solvers()[0].solve(&d, &options).map(|_| ());
     assert!(with(SolverOptions::default()).is_ok());
     for tolerance in [0.0, 1.0, -1e-8, f64::NAN] {
@@ -230,7 +230,7 @@ fn options_out_of_range_are_refused() {
 fn a_limit_of_time_is_kept_from_the_shortest_to_the_longest_by_every_solver() {
     let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [40, 40], Pattern::Right).unwrap();
     let problem = exact(Case::Circle, &[]).problem().unwrap();
-    let d = Discretization::new(&problem, mesh).unwrap();
+    let d = PairDiscretization::new(&problem, mesh).unwrap();
     for mut solver in solvers() {
         let mut status = |seconds: f64| {
             let time_limit = Some(TimeLimit::from_seconds(seconds).expect("a limit"));
@@ -250,7 +250,7 @@ fn a_limit_of_time_is_kept_from_the_shortest_to_the_longest_by_every_solver() {
 fn an_interrupt_is_heard_between_the_steps_of_a_solver() {
     let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [40, 40], Pattern::Right).unwrap();
     let problem = exact(Case::Circle, &[]).problem().unwrap();
-    let d = Discretization::new(&problem, mesh).unwrap();
+    let d = PairDiscretization::new(&problem, mesh).unwrap();
     for mut solver in solvers().into_iter().filter(|solver| solver.name() != "osqp") {
         let mut solved = |questions: usize| {
             let asked = Arc::new(AtomicUsize::new(0));
@@ -262,10 +262,10 @@ fn an_interrupt_is_heard_between_the_steps_of_a_solver() {
         };
         let (whole, questions) = solved(usize::MAX);
         assert_eq!(whole.statistics.status, Status::Solved);
-        assert!(questions > 0 && certify(&d, whole, TOLERANCE).is_ok(), "{questions} questions");
+        assert!(questions > 0 && certify_pair(&d, whole, TOLERANCE).is_ok(), "{questions} questions");
         let (stopped, _) = solved(0);
         assert_eq!(stopped.statistics.status, Status::Interrupted);
-        let rejected = certify(&d, stopped, TOLERANCE).expect_err("it has not arrived");
+        let rejected = certify_pair(&d, stopped, TOLERANCE).expect_err("it has not arrived");
         assert!(rejected.remedy().contains("asked to stop"), "{}", rejected.remedy());
     }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use membrane_contact::discretization::Discretization;
+use membrane_contact::discretization::PairDiscretization;
 use membrane_contact::problem::{Case, ExactSolution};
 use membrane_contact::qp::Clarabel;
 #[cfg(feature = "osqp")]
@@ -27,7 +27,7 @@ pub fn solvers() -> Vec<Box<dyn ContactSolver>> {
 }
 
 /// Solves at [`TOLERANCE`].
-pub fn solve(solver: &mut dyn ContactSolver, d: &Discretization, polish: bool) -> Candidate {
+pub fn solve(solver: &mut dyn ContactSolver, d: &PairDiscretization, polish: bool) -> Candidate {
     let options = SolverOptions { tolerance: TOLERANCE, polish, ..SolverOptions::default() };
     solver.solve(d, &options).expect("the backend runs")
 }

@@ -1,7 +1,7 @@
 //! Whatever the solver, what is certified is in the cones and complementary to the last bit: `u1 >= u2`, (4.2) and (4.8).
 
-use membrane_contact::action::{ContactSolution, certify};
-use membrane_contact::discretization::Discretization;
+use membrane_contact::action::{PairSolution, certify_pair};
+use membrane_contact::discretization::PairDiscretization;
 use membrane_contact::mesh::{Mesh, Pattern, VertexKind, rectangle};
 use membrane_contact::problem::{Case, ContactProblem};
 use membrane_contact::solver::{ActiveSet, Candidate, ContactSolver, Multigrid, SolverOptions};
@@ -45,7 +45,7 @@ fn may_be_rejected(solver: &str, problem: &str, polish: bool) -> bool {
 }
 
 /// The vertices that are not as they must be.
-fn faults(d: &Discretization, solution: &ContactSolution) -> Vec<String> {
+fn faults(d: &PairDiscretization, solution: &PairSolution) -> Vec<String> {
     let (gap, lambda, contact) = (solution.gap(), solution.lambda(), solution.contact());
     let is_fine = |a: usize| match d.mesh().kind()[a] {
         VertexKind::Interior => {
@@ -58,11 +58,11 @@ fn faults(d: &Discretization, solution: &ContactSolution) -> Vec<String> {
     (0..gap.len()).filter(|&a| !is_fine(a)).map(describe).collect()
 }
 
-fn contacts(solution: &ContactSolution) -> usize {
+fn contacts(solution: &PairSolution) -> usize {
     solution.contact().iter().filter(|&&contact| contact).count()
 }
 
-fn pressed(solution: &ContactSolution) -> usize {
+fn pressed(solution: &PairSolution) -> usize {
     solution.lambda().iter().filter(|&&lambda| lambda > 0.0).count()
 }
 
@@ -74,11 +74,11 @@ const CUT_OFF: f64 = 2.0 * TOLERANCE;
 fn every_solver_touches_where_it_presses_and_presses_nowhere_else() {
     let mesh = square(16);
     for (name, problem) in problems() {
-        let d = Discretization::new(&problem, mesh.clone()).unwrap();
-        let reference = certify(&d, solve(&mut ActiveSet, &d, true), TOLERANCE).unwrap();
+        let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
+        let reference = certify_pair(&d, solve(&mut ActiveSet, &d, true), TOLERANCE).unwrap();
         for mut solver in solvers() {
             let is = format!("{}, {name}", solver.name());
-            let solution = certify(&d, solve(&mut *solver, &d, true), TOLERANCE).unwrap();
+            let solution = certify_pair(&d, solve(&mut *solver, &d, true), TOLERANCE).unwrap();
             assert_eq!(faults(&d, &solution), [""; 0], "{is}");
             assert_eq!(solution.contact(), reference.contact(), "{is}");
             assert_eq!(solution.cut_off().gap, 0.0, "{is}: the contact set is exact, no displacement moves");
@@ -94,13 +94,13 @@ fn so_does_what_is_not_polished_or_loose() {
     let mesh = square(16);
     let mut moved = 0;
     for (name, problem) in problems() {
-        let d = Discretization::new(&problem, mesh.clone()).unwrap();
+        let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
         for (tolerance, polish) in [(TOLERANCE, false), (LOOSE, false), (LOOSE, true)] {
             for mut solver in solvers() {
                 let is = format!("{}, {name}, {tolerance:e}, {polish}", solver.name());
                 let options = SolverOptions { tolerance, polish, ..SolverOptions::default() };
                 let candidate = solver.solve(&d, &options).unwrap();
-                let solution = match certify(&d, candidate, tolerance) {
+                let solution = match certify_pair(&d, candidate, tolerance) {
                     Err(_) if may_be_rejected(solver.name(), &name, polish) => continue,
                     result => result.unwrap_or_else(|no| panic!("{is}: {no}")),
                 };
@@ -118,12 +118,12 @@ fn so_does_what_is_not_polished_or_loose() {
 fn warm_starts_and_loose_ones_lead_to_the_same_contact() {
     let mesh = square(24);
     let [far, near] = [0.8, 1.0].map(|force| freefem([1.0, 1.0], 1.0, force));
-    let [d_far, d] = [far, near].map(|problem| Discretization::new(&problem, mesh.clone()).unwrap());
-    let expected = certify(&d, solve(&mut ActiveSet, &d, true), TOLERANCE).unwrap();
+    let [d_far, d] = [far, near].map(|problem| PairDiscretization::new(&problem, mesh.clone()).unwrap());
+    let expected = certify_pair(&d, solve(&mut ActiveSet, &d, true), TOLERANCE).unwrap();
     for mut solver in solvers() {
         let start = solve(&mut *solver, &d_far, true);
         let options = SolverOptions { warm_start: Some(start.into()), ..SolverOptions::default() };
-        let solution = certify(&d, solver.solve(&d, &options).unwrap(), TOLERANCE).unwrap();
+        let solution = certify_pair(&d, solver.solve(&d, &options).unwrap(), TOLERANCE).unwrap();
         assert_eq!(faults(&d, &solution), [""; 0], "{}", solver.name());
         assert_eq!(solution.contact(), expected.contact(), "{}", solver.name());
     }
@@ -134,11 +134,11 @@ fn warm_starts_and_loose_ones_lead_to_the_same_contact() {
 fn what_was_certified_is_certified_again_and_gives_the_same() {
     let mesh = square(16);
     for (name, problem) in problems() {
-        let d = Discretization::new(&problem, mesh.clone()).unwrap();
+        let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
         for mut solver in solvers() {
             for polish in [false, true] {
                 let is = format!("{}, {name}, {polish}", solver.name());
-                let first = match certify(&d, solve(&mut *solver, &d, polish), TOLERANCE) {
+                let first = match certify_pair(&d, solve(&mut *solver, &d, polish), TOLERANCE) {
                     Err(_) if may_be_rejected(solver.name(), &name, polish) => continue,
                     result => result.unwrap_or_else(|no| panic!("{is}: {no}")),
                 };
@@ -148,7 +148,7 @@ fn what_was_certified_is_certified_again_and_gives_the_same() {
                     multiplier: d.interior().iter().map(|&a| lambda[a] * d.dual_area()[a]).collect(),
                     statistics: first.statistics().clone(),
                 };
-                let again = certify(&d, candidate, TOLERANCE).unwrap_or_else(|no| panic!("{is}: {no}"));
+                let again = certify_pair(&d, candidate, TOLERANCE).unwrap_or_else(|no| panic!("{is}: {no}"));
                 assert_eq!(again.displacement(), first.displacement(), "{is}");
                 assert_eq!(again.lambda(), first.lambda(), "{is}");
                 assert_eq!(again.contact(), first.contact(), "{is}");
@@ -161,7 +161,7 @@ fn what_was_certified_is_certified_again_and_gives_the_same() {
 #[test]
 fn nothing_bad_becomes_a_solution() {
     let mesh = square(16);
-    let d = Discretization::new(&freefem([1.0, 3.0], 1.0, 1.0), mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&freefem([1.0, 3.0], 1.0, 1.0), mesh.clone()).unwrap();
     let sound = solve(&mut ActiveSet, &d, true);
     let k = sound.multiplier.iter().position(|&y| y > 0.0).expect("they press");
     let a = d.interior()[k];
@@ -170,7 +170,7 @@ fn nothing_bad_becomes_a_solution() {
     let spoilt = |spoil: &dyn Fn(&mut Candidate)| {
         let mut candidate = sound.clone();
         spoil(&mut candidate);
-        certify(&d, candidate, TOLERANCE)
+        certify_pair(&d, candidate, TOLERANCE)
     };
     assert!(spoilt(&|_| ()).is_ok());
     let little = 1e-6;
@@ -188,10 +188,10 @@ fn nothing_bad_becomes_a_solution() {
 fn multigrid_and_active_set_find_the_contact_of_freefem() {
     let problem = freefem([1.0, 1.0], 1.0, 1.0);
     let mesh = square(256);
-    let d = Discretization::new(&problem, mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
     let solvers: [&mut dyn ContactSolver; 2] = [&mut ActiveSet, &mut Multigrid];
     for solver in solvers {
-        let solution = certify(&d, solve(solver, &d, true), TOLERANCE).unwrap();
+        let solution = certify_pair(&d, solve(solver, &d, true), TOLERANCE).unwrap();
         assert_eq!(faults(&d, &solution), [""; 0], "{}", solver.name());
         assert_eq!((contacts(&solution), pressed(&solution)), (36_561, 36_561), "{}", solver.name());
     }

@@ -1,7 +1,7 @@
 //! Solutions that are known exactly.
 
-use membrane_contact::action::{Action, ContactSolution, certify};
-use membrane_contact::discretization::Discretization;
+use membrane_contact::action::{Action, PairSolution, certify_pair};
+use membrane_contact::discretization::PairDiscretization;
 use membrane_contact::mesh::{Mesh, Pattern, rectangle};
 use membrane_contact::problem::{Case, ContactProblem, ExactSolution};
 use membrane_contact::solver::ContactSolver;
@@ -32,7 +32,7 @@ fn nodal_error(mesh: &Mesh, exact: &ExactSolution, displacement: &[Vec<f64>; 2])
 }
 
 /// `lambda_h` over vertices, by (4.5) alone.
-fn recovered(d: &Discretization, displacement: &[Vec<f64>; 2]) -> Vec<f64> {
+fn recovered(d: &PairDiscretization, displacement: &[Vec<f64>; 2]) -> Vec<f64> {
     let mut lambda = vec![0.0; d.mesh().points().len()];
     for (&a, action) in d.interior().iter().zip(Action::recover(d, displacement)) {
         lambda[a] = action.lambda;
@@ -41,17 +41,17 @@ fn recovered(d: &Discretization, displacement: &[Vec<f64>; 2]) -> Vec<f64> {
 }
 
 /// Certified and polished solutions of all backends.
-fn solutions(exact: &ExactSolution, mesh: &Mesh) -> Vec<ContactSolution> {
+fn solutions(exact: &ExactSolution, mesh: &Mesh) -> Vec<PairSolution> {
     let problem = exact.problem().expect("a case has valid data");
-    let d = Discretization::new(&problem, mesh.clone()).expect("the data are finite");
+    let d = PairDiscretization::new(&problem, mesh.clone()).expect("the data are finite");
     let solve = |solver: &mut Box<dyn ContactSolver>| {
-        certify(&d, solve(solver.as_mut(), &d, true), TOLERANCE).expect("certified")
+        certify_pair(&d, solve(solver.as_mut(), &d, true), TOLERANCE).expect("certified")
     };
     solvers().iter_mut().map(solve).collect()
 }
 
 /// Those of the solvers that are right to rounding; multigrid is so to its tolerance.
-fn exact_solutions(exact: &ExactSolution, mesh: &Mesh) -> Vec<ContactSolution> {
+fn exact_solutions(exact: &ExactSolution, mesh: &Mesh) -> Vec<PairSolution> {
     let mut solutions = solutions(exact, mesh);
     solutions.retain(|solution| solution.statistics().solver != "multigrid");
     solutions
@@ -102,14 +102,14 @@ fn an_interior_point_answer_is_not_exact_before_the_polish() {
     println!("backend  cells  polish  error of u  error of lambda");
     for cells in [8, 32, 64] {
         let mesh = unit_square(cells);
-        let d = Discretization::new(&problem, mesh.clone()).unwrap();
+        let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
         for mut solver in solvers() {
             for polish in [false, true] {
                 let candidate = solve(solver.as_mut(), &d, polish);
                 let error = nodal_error(&mesh, &exact, &candidate.displacement);
                 let action_error =
                     distance(&recovered(&d, &candidate.displacement), &strip_action(&mesh, 0.5, 1.5));
-                assert!(certify(&d, candidate, TOLERANCE).is_ok(), "certified either way");
+                assert!(certify_pair(&d, candidate, TOLERANCE).is_ok(), "certified either way");
                 println!("{:8} {cells:5}  {polish:6}  {error:10.1e}  {action_error:15.1e}", solver.name());
                 if solver.name() == "clarabel" {
                     assert_eq!(
@@ -138,9 +138,9 @@ fn extended_totals_reach_the_edge_and_the_papers_do_not() {
         let mesh = unit_square(cells);
         let h = 1.0 / cells as f64;
         let inside = (1.0 - h).powi(2);
-        let d = Discretization::new(&full, mesh.clone()).unwrap();
+        let d = PairDiscretization::new(&full, mesh.clone()).unwrap();
         for mut solver in solvers() {
-            let solution = certify(&d, solve(solver.as_mut(), &d, true), TOLERANCE).unwrap();
+            let solution = certify_pair(&d, solve(solver.as_mut(), &d, true), TOLERANCE).unwrap();
             let force = (4.0 + 3.0 * 8.0) / 4.0;
             assert!(near(solution.total_force_extended(), force), "{}", solution.total_force_extended());
             assert!(near(solution.contact_area_extended(), 1.0), "{}", solution.contact_area_extended());
@@ -168,7 +168,7 @@ fn extended_totals_reach_the_edge_and_the_papers_do_not() {
 fn the_extended_force_of_full_contact_is_the_integral_of_the_action() {
     let exact = exact(Case::FullContact, &[]);
     let errors = [16, 64].map(|cells| {
-        let of = |solution: &ContactSolution| (solution.total_force_extended() - 12.5).abs();
+        let of = |solution: &PairSolution| (solution.total_force_extended() - 12.5).abs();
         largest(solutions(&exact, &unit_square(cells)).iter().map(of))
     });
     assert!(errors[0] < 0.05 && errors[1] < errors[0] / 8.0, "of second order: {errors:?}");

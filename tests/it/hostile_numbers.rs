@@ -7,7 +7,7 @@ mod program;
 mod scaling;
 mod truth;
 
-use membrane_contact::discretization::Discretization;
+use membrane_contact::discretization::PairDiscretization;
 use membrane_contact::solver::{ActiveSet, ContactSolver, SolverOptions};
 use membrane_contact::study::{Bounded, Tolerance, solve_bounded};
 
@@ -22,12 +22,12 @@ const AGREED: f64 = 1e-6;
 const LONGEST_MESSAGE: usize = 300;
 
 impl Hostile {
-    fn discretize(&self) -> Discretization {
-        Discretization::new(&self.problem, self.mesh.clone())
+    fn discretize(&self) -> PairDiscretization {
+        PairDiscretization::new(&self.problem, self.mesh.clone())
             .unwrap_or_else(|error| panic!("{}: {error}", self.name))
     }
 
-    fn solve(&self, d: &Discretization, solver: &mut dyn ContactSolver) -> Result<Bounded, String> {
+    fn solve(&self, d: &PairDiscretization, solver: &mut dyn ContactSolver) -> Result<Bounded, String> {
         let name = format!("{}, {}", self.name, solver.name());
         let options = SolverOptions::default();
         solve_bounded(&self.problem, None, d, solver, &options, Tolerance::Fixed(TOLERANCE))
@@ -56,7 +56,7 @@ fn every_solver_is_certified_and_all_find_the_same() {
 }
 
 /// How far displacements and actions are apart, in units of the data; infinite where one is not a number.
-fn difference(d: &Discretization, first: &Bounded, second: &Bounded) -> f64 {
+fn difference(d: &PairDiscretization, first: &Bounded, second: &Bounded) -> f64 {
     let scales = d.scales();
     let [first, second] = [&first.solution, &second.solution];
     let displacements =
@@ -68,7 +68,7 @@ fn difference(d: &Discretization, first: &Bounded, second: &Bounded) -> f64 {
 /// What is wrong with what is made of the solutions.
 fn complaints(
     problems: impl IntoIterator<Item = Hostile>,
-    about: impl Fn(&Hostile, &Discretization, &Bounded) -> Vec<String>,
+    about: impl Fn(&Hostile, &PairDiscretization, &Bounded) -> Vec<String>,
 ) -> Vec<String> {
     let about_one = |hostile: Hostile| {
         let d = hostile.discretize();
@@ -84,7 +84,7 @@ fn summary_files_fluxes_and_export_hold_what_they_should() {
     assert_eq!(complaints(solvable(), outputs::complaints), [""; 0]);
 }
 
-fn pictures(hostile: &Hostile, d: &Discretization, bounded: &Bounded) -> Vec<String> {
+fn pictures(hostile: &Hostile, d: &PairDiscretization, bounded: &Bounded) -> Vec<String> {
     outputs::pictures(hostile, d, bounded).err().into_iter().collect()
 }
 
@@ -103,8 +103,9 @@ fn all_pictures_can_be_drawn() {
 #[test]
 fn what_cannot_be_computed_with_is_refused_in_one_line_with_the_remedy() {
     for (hostile, says) in refused() {
-        let error =
-            Discretization::new(&hostile.problem, hostile.mesh.clone()).map(|_| ()).expect_err(hostile.name);
+        let error = PairDiscretization::new(&hostile.problem, hostile.mesh.clone())
+            .map(|_| ())
+            .expect_err(hostile.name);
         let message = error.to_string();
         for word in says {
             assert!(message.contains(word), "{}: {word:?} is not in {message:?}", hostile.name);

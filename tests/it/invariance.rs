@@ -13,8 +13,8 @@ mod swap;
 use std::io::Write;
 use std::time::{SystemTime, UNIX_EPOCH};
 
-use membrane_contact::action::{ContactSolution, certify};
-use membrane_contact::discretization::Discretization;
+use membrane_contact::action::{PairSolution, certify_pair};
+use membrane_contact::discretization::PairDiscretization;
 use membrane_contact::solver::{ActiveSet, ContactSolver, SolverOptions};
 use proptest::test_runner::{Config, RngSeed, TestCaseError, TestError, TestRunner};
 
@@ -102,14 +102,14 @@ fn is_seen(property: Property) {
 }
 
 /// A certified solution by one of the built-in solvers.
-fn solve_by(solver: &mut dyn ContactSolver, d: &Discretization) -> Result<ContactSolution, String> {
+fn solve_by(solver: &mut dyn ContactSolver, d: &PairDiscretization) -> Result<PairSolution, String> {
     let options = SolverOptions { tolerance: TOLERANCE, ..SolverOptions::default() };
     let name = solver.name().to_owned();
     let candidate = solver.solve(d, &options).map_err(|error| format!("{name}: {error}"))?;
-    certify(d, candidate, TOLERANCE).map_err(|rejected| rejected.to_string())
+    certify_pair(d, candidate, TOLERANCE).map_err(|rejected| rejected.to_string())
 }
 
-fn solve(d: &Discretization) -> Result<ContactSolution, String> {
+fn solve(d: &PairDiscretization) -> Result<PairSolution, String> {
     solve_by(&mut ActiveSet, d)
 }
 
@@ -121,8 +121,8 @@ struct Fields {
     contact: Vec<bool>,
 }
 
-impl From<&ContactSolution> for Fields {
-    fn from(solution: &ContactSolution) -> Self {
+impl From<&PairSolution> for Fields {
+    fn from(solution: &PairSolution) -> Self {
         Self {
             displacement: solution.displacement().clone(),
             lambda: solution.lambda().to_vec(),
@@ -145,7 +145,7 @@ const EXACT: Nearness = Nearness { displacement: 1e-11, action: 1e-8 };
 impl Fields {
     /// Whether two solutions are the same: their displacements, their actions, and their contact sets where it is clear
     /// whether the membranes touch: where neither gap nor action is zero up to rounding, or one of them alone.
-    fn compare(&self, other: &Self, d: &Discretization, near: Nearness) -> Result<(), String> {
+    fn compare(&self, other: &Self, d: &PairDiscretization, near: Nearness) -> Result<(), String> {
         let scales = d.scales();
         let gap = |a: usize| (self.displacement[0][a] - self.displacement[1][a]) / scales.displacement;
         for a in 0..self.lambda.len() {

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use membrane_contact::action::certify;
+use membrane_contact::action::certify_pair;
 use membrane_contact::cli::{CaseFile, MeshSource};
-use membrane_contact::discretization::Discretization;
+use membrane_contact::discretization::PairDiscretization;
 use membrane_contact::mesh::Mesh;
 
 use crate::common::{TOLERANCE, distance, solve, solvers};
@@ -32,12 +32,12 @@ fn plate() -> (CaseFile, Mesh) {
 #[test]
 fn backends_agree_on_displacements_action_and_contact() {
     let (case, mesh) = plate();
-    let d = Discretization::new(&case.problem, mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&case.problem, mesh.clone()).unwrap();
     let range = |u: &[f64]| u.iter().copied().fold(0.0, f64::max) - u.iter().copied().fold(0.0, f64::min);
     let solutions: Vec<_> = solvers()
         .into_iter()
         .flat_map(|mut solver| [true, false].map(|polish| (polish, solve(solver.as_mut(), &d, polish))))
-        .map(|(polish, candidate)| (polish, certify(&d, candidate, TOLERANCE).expect("certified")))
+        .map(|(polish, candidate)| (polish, certify_pair(&d, candidate, TOLERANCE).expect("certified")))
         .collect();
     let (_, reference) = &solutions[0];
     for (polish, solution) in &solutions {

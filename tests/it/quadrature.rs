@@ -1,6 +1,6 @@
 //! Loads between the points of the quadrature: the bound does not hold then, and a warning says so.
 
-use membrane_contact::discretization::Discretization;
+use membrane_contact::discretization::PairDiscretization;
 use membrane_contact::estimate::LoadWarning;
 use membrane_contact::mesh::{Pattern, rectangle};
 use membrane_contact::problem::{ContactProblem, Expression};
@@ -11,7 +11,7 @@ fn solved(f1: &str, f2: &str, cells: usize) -> Bounded {
     let [f1, f2] = [f1, f2].map(|formula| formula.parse::<Expression>().unwrap());
     let problem = ContactProblem::builder().tension(1.0, 3.0).load(f1, f2).height(0.1).build().unwrap();
     let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [cells, cells], Pattern::Right).unwrap();
-    let d = Discretization::new(&problem, mesh).unwrap();
+    let d = PairDiscretization::new(&problem, mesh).unwrap();
     let options = SolverOptions::default();
     solve_bounded(&problem, None, &d, &mut ActiveSet, &options, Tolerance::Fixed(1e-8)).unwrap()
 }

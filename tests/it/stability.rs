@@ -1,7 +1,7 @@
 //! The stability of Corollary 6, (2.17): the constant stays bounded under refinement.
 
-use membrane_contact::action::{ContactSolution, certify};
-use membrane_contact::discretization::Discretization;
+use membrane_contact::action::{PairSolution, certify_pair};
+use membrane_contact::discretization::PairDiscretization;
 use membrane_contact::mesh::{Pattern, rectangle};
 use membrane_contact::problem::{ContactProblem, Function};
 use membrane_contact::solver::{ActiveSet, ContactSolver, SolverOptions};
@@ -48,7 +48,7 @@ impl Data {
 }
 
 /// `||u1|| + ||u2||` in H1 and `||lambda||` in L2, the L2 norms of the displacements by the lumped masses.
-fn solution_norm(d: &Discretization, solution: &ContactSolution) -> f64 {
+fn solution_norm(d: &PairDiscretization, solution: &PairSolution) -> f64 {
     let l2_sq = |v: &[f64]| v.iter().zip(d.dual_area()).map(|(v, area)| area * v * v).sum::<f64>();
     let h1 = |u: &[f64]| {
         let seminorm_sq: f64 = d.stiffness().iter().map(|(k, (a, b))| k * u[a] * u[b]).sum();
@@ -64,9 +64,9 @@ fn constant(cells: usize, scale: impl Fn(usize) -> f64) -> f64 {
     let mut random = Random::new(2009);
     let ratios = (0..20).map(|_| {
         let data = Data::draw(&mut random);
-        let d = Discretization::new(&data.problem(), mesh.clone()).unwrap();
+        let d = PairDiscretization::new(&data.problem(), mesh.clone()).unwrap();
         let candidate = ActiveSet.solve(&d, &SolverOptions::default()).expect("it runs");
-        let solution = certify(&d, candidate, TOLERANCE).expect("certified");
+        let solution = certify_pair(&d, candidate, TOLERANCE).expect("certified");
         scale(cells) * solution_norm(&d, &solution) / data.norm()
     });
     largest(ratios)

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::solution::{A_SOLUTION, left_out_line, write_solution};
-use crate::action::ContactSolution;
+use crate::action::PairSolution;
 use crate::cli::args::AdaptArguments;
 use crate::cli::case::{CaseFile, SolverName};
 use crate::cli::failure::Failure;
@@ -267,7 +267,7 @@ fn write_mesh(
     results: &mut Results,
     title: &str,
     mesh: &Arc<Mesh>,
-    solution: &ContactSolution,
+    solution: &PairSolution,
     pictures: &Pictures,
 ) -> Result<Vec<&'static str>, Failure> {
     let (title, mesh, contact) = (title.to_owned(), Arc::clone(mesh), solution.contact().to_vec());

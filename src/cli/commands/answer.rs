@@ -3,7 +3,7 @@
 use std::io::{self, BufReader};
 use std::path::Path;
 
-use crate::action::{ContactSolution, Rejected, Residuals, StackSolution, certify, certify_stack};
+use crate::action::{PairSolution, Rejected, Residuals, StackSolution, certify_pair, certify_stack};
 use crate::cli::args::CheckArguments;
 use crate::cli::failure::Failure;
 use crate::cli::run::files::{Part, SUMMARY};
@@ -11,7 +11,7 @@ use crate::cli::run::folder::{Claim, Folder};
 use crate::cli::run::input::{self, Input};
 use crate::cli::run::setup::Setup;
 use crate::cli::run::watch::Watch;
-use crate::discretization::{Discretization, StackDiscretization};
+use crate::discretization::{PairDiscretization, StackDiscretization};
 use crate::output::{Seconds, Summary};
 use crate::qp::{
     Answer, BackendError, QpBackend, QpOptions, QpProblem, QpSolution, Status, contact_qp, read_answer,
@@ -34,21 +34,21 @@ pub(super) struct Verdict<S> {
 /// Reads an answer and has it certified; the verdict goes also into a folder, if one is named.
 pub(super) fn judge_pair(
     setup: &Setup,
-    d: &Discretization,
+    d: &PairDiscretization,
     file: &Path,
     arguments: &CheckArguments,
     seconds: Seconds,
     watch: &Watch,
-) -> Result<Verdict<ContactSolution>, Failure> {
+) -> Result<Verdict<PairSolution>, Failure> {
     let n = d.interior().len();
     let answer = read(setup, file, [2 * n, n])?;
     let tolerance = setup.case.solver.tolerance.or_default();
     let certified =
-        |answer: &Answer| certify(d, Candidate::from_answer(d, answer.clone(), statistics()), tolerance);
+        |answer: &Answer| certify_pair(d, Candidate::from_answer(d, answer.clone(), statistics()), tolerance);
     let is_right_polished = |answer: &Answer| {
         let options = SolverOptions { tolerance, ..SolverOptions::default() };
         let candidate = QpSolver::new(Given::new(&contact_qp(d), answer)).solve(d, &options);
-        candidate.is_ok_and(|c| !is_repaired(&c.statistics) && certify(d, c, tolerance).is_ok())
+        candidate.is_ok_and(|c| !is_repaired(&c.statistics) && certify_pair(d, c, tolerance).is_ok())
     };
     let result = certified(&answer);
     let remedy = if result.is_ok() { "" } else { remedy(&answer, &certified, &is_right_polished) };

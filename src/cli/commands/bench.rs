@@ -18,7 +18,7 @@ use crate::cli::run::progress::Progress;
 use crate::cli::run::setup::{Setup, check_refinements, solver, unused_groups};
 use crate::cli::run::watch::Watch;
 use crate::cli::terminal::print;
-use crate::discretization::Discretization;
+use crate::discretization::PairDiscretization;
 use crate::formats::gmsh::PhysicalGroup;
 use crate::mesh::{MAX_VERTICES, Mesh, gmsh_nodes};
 use crate::problem::ContactProblem;
@@ -208,7 +208,7 @@ impl<'a> Bench<'a> {
     ) -> Result<(), Failure> {
         let vertices = grouped(mesh.points().len());
         self.progress.stage(format!("assembling on {vertices} vertices"));
-        let d = Discretization::new(problem, mesh.clone()).map_err(|error| {
+        let d = PairDiscretization::new(problem, mesh.clone()).map_err(|error| {
             let vertices: Vec<usize> = error.vertex().into_iter().collect();
             Failure::Input(format!("{name}: {error}{}", gmsh_nodes(&vertices, &self.node_tags)))
         })?;

@@ -2,7 +2,7 @@
 
 use super::answer::{self, Verdict};
 use crate::action::{
-    ContactSolution, GapSolution, Rejected, Residuals, StackSolution, certify, certify_stack,
+    GapSolution, PairSolution, Rejected, Residuals, StackSolution, certify_pair, certify_stack,
 };
 use crate::cli::args::CheckArguments;
 use crate::cli::case::{CaseFile, SolverName, SolverSettings};
@@ -11,7 +11,7 @@ use crate::cli::run::progress::Progress;
 use crate::cli::run::setup::{Setup, options, solver, stack_solver, unused_groups};
 use crate::cli::run::watch::Watch;
 use crate::cli::terminal::{fixed, print, wrapped};
-use crate::discretization::Discretization;
+use crate::discretization::PairDiscretization;
 use crate::fem::element_loads;
 use crate::flux::{FluxDefects, Reconstruction, Reconstructor};
 use crate::mesh::SubTriangulation;
@@ -41,7 +41,7 @@ trait Shown {
     fn total_force(&self) -> f64;
 }
 
-impl Shown for ContactSolution {
+impl Shown for PairSolution {
     fn residuals(&self) -> &Residuals {
         self.residuals()
     }
@@ -108,7 +108,7 @@ fn check_pair(
             let tolerance = setup.case.solver.tolerance.or_default();
             let solved = |settings: &SolverSettings| {
                 let candidate = solver(settings.name).solve(&d, &options(settings))?;
-                Ok(certify(&d, candidate, tolerance))
+                Ok(certify_pair(&d, candidate, tolerance))
             };
             (columns_of_solvers(setup, &solved, &progress)?, "")
         }
@@ -238,8 +238,8 @@ fn heading(name: SolverName, way: &str) -> [String; 2] {
 /// The identities of the reconstructed fluxes `t_ih` of both membranes, for each choice: relative defects.
 fn flux_lines(
     problem: &ContactProblem,
-    d: &Discretization,
-    solution: &ContactSolution,
+    d: &PairDiscretization,
+    solution: &PairSolution,
 ) -> Result<String, Box<dyn std::error::Error>> {
     let sub = SubTriangulation::new(d.mesh())?;
     let [f1, f2] = problem.as_pair().expect("a discretization of the pair belongs to one").load();

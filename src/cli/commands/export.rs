@@ -8,7 +8,7 @@ use crate::cli::run::progress::Progress;
 use crate::cli::run::setup::{Setup, unused_groups};
 use crate::cli::run::watch::Watch;
 use crate::cli::terminal::print;
-use crate::discretization::{Discretization, StackDiscretization};
+use crate::discretization::{PairDiscretization, StackDiscretization};
 use crate::qp::{
     QpPart, QpProblem, contact_qp, stack_qp, write_matrix_market, write_npz, write_qps, write_stack_npz,
 };
@@ -53,7 +53,7 @@ pub(crate) fn run(arguments: &ExportArguments, watch: &Watch) -> Result<(), Fail
 
 /// The paper's pair, or another stack, on its mesh.
 enum Posed {
-    Pair(Box<Discretization>),
+    Pair(Box<PairDiscretization>),
     Stack(Box<StackDiscretization>),
 }
 

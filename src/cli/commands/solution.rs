@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
-use crate::action::ContactSolution;
+use crate::action::PairSolution;
 use crate::cli::failure::Failure;
 use crate::cli::run::files::{MEMBRANES, SOLUTION};
 use crate::cli::run::folder::Results;
 use crate::cli::run::pictures::Pictures;
-use crate::discretization::Discretization;
+use crate::discretization::PairDiscretization;
 use crate::estimate::ErrorBound;
 use crate::output::write_vtu;
 use crate::pictures::membranes::{Picture, render};
@@ -19,8 +19,8 @@ pub(super) const A_SOLUTION: &str = "a solution";
 pub(super) fn write_solution(
     results: &mut Results,
     title: &str,
-    d: &Discretization,
-    solution: &ContactSolution,
+    d: &PairDiscretization,
+    solution: &PairSolution,
     bound: &ErrorBound,
     pictures: &Pictures,
 ) -> Result<Vec<&'static str>, Failure> {

@@ -12,7 +12,7 @@ use folder::{claim, reject, too_late};
 use report::{certified_line, mesh_line, polish_line, solver_line};
 
 use super::solution::{left_out_line, write_solution};
-use crate::action::{ContactSolution, Rejected};
+use crate::action::{PairSolution, Rejected};
 use crate::cli::args::SolveArguments;
 use crate::cli::case::CaseFile;
 use crate::cli::failure::Failure;
@@ -24,7 +24,7 @@ use crate::cli::run::progress::Progress;
 use crate::cli::run::setup::{Setup, options, solver, too_early, unused_groups};
 use crate::cli::run::watch::Watch;
 use crate::cli::terminal::{fields, fixed, print, wrapped};
-use crate::discretization::Discretization;
+use crate::discretization::PairDiscretization;
 use crate::fem::element_loads;
 use crate::flux::{Reconstruction, Reconstructor};
 use crate::mesh::{DualMesh, SubTriangulation};
@@ -77,7 +77,7 @@ pub(crate) fn run(arguments: &SolveArguments, watch: &Watch) -> Result<(), Failu
 /// Solves, and bounds the error, in the time that there is.
 fn solve(
     setup: &Setup,
-    d: &Discretization,
+    d: &PairDiscretization,
     seconds: Seconds,
     clock: &Clock,
     (folder, watch): (&Folder, &Watch),
@@ -101,7 +101,7 @@ fn solve(
 /// Writes what is certified: the solution in any case, the rest if there is time.
 fn write_results(
     setup: &Setup,
-    d: &Discretization,
+    d: &PairDiscretization,
     bounded: &Bounded,
     seconds: Seconds,
     (folder, clock, pictures): (&Folder, &Clock, &Pictures),
@@ -144,8 +144,8 @@ fn override_settings(setup: &mut Setup, arguments: &SolveArguments, clock: &Cloc
 fn write_dual(
     results: &mut Results,
     case: &CaseFile,
-    d: &Discretization,
-    solution: &ContactSolution,
+    d: &PairDiscretization,
+    solution: &PairSolution,
     (clock, pictures): (&Clock, &Pictures),
 ) -> Result<Vec<&'static str>, Failure> {
     let left_out = |names: &[&'static str]| Ok([names, &pictures.files(MESH)].concat());

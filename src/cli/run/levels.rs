@@ -79,7 +79,7 @@ pub(crate) fn settings(setup: &Setup) -> String {
 /// `node_tags` are Gmsh's numbers of the vertices.
 pub(crate) fn failure(name: &str, error: &StudyError, node_tags: &[u64]) -> Failure {
     let vertices = match error {
-        StudyError::Discretization(error) => error.vertex().into_iter().collect(),
+        StudyError::PairDiscretization(error) => error.vertex().into_iter().collect(),
         StudyError::Mesh(error) => error.vertices(),
         _ => Vec::new(),
     };

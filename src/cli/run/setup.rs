@@ -12,7 +12,7 @@ use crate::cli::args::CaseArguments;
 use crate::cli::case::{CaseFile, CaseId, MeshSource, SolverName, SolverSettings};
 use crate::cli::failure::Failure;
 use crate::cli::terminal::COLUMNS;
-use crate::discretization::{Discretization, StackDiscretization};
+use crate::discretization::{PairDiscretization, StackDiscretization};
 use crate::formats::gmsh::{PhysicalGroup, parse};
 use crate::mesh::{GmshMesh, MAX_VERTICES, MeshFamily, ReadError, estimated_vertices, generate, gmsh_nodes};
 use crate::output::Seconds;
@@ -82,10 +82,10 @@ impl Setup {
     }
 
     /// Assembles the discrete problem of the pair, and says how long it took.
-    pub(crate) fn discretize(&self, progress: &Progress) -> Result<(Discretization, Seconds), Failure> {
+    pub(crate) fn discretize(&self, progress: &Progress) -> Result<(PairDiscretization, Seconds), Failure> {
         self.require_pair()?;
         self.assemble(progress, || {
-            Discretization::new(&self.case.problem, self.family.mesh().clone())
+            PairDiscretization::new(&self.case.problem, self.family.mesh().clone())
                 .map_err(|error| (error.vertex(), error.to_string()))
         })
     }

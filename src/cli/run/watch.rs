@@ -12,7 +12,7 @@ use std::thread;
 use std::time::Instant;
 
 use crate::cli::failure::Failure;
-use crate::discretization::{Discretization, StackDiscretization};
+use crate::discretization::{PairDiscretization, StackDiscretization};
 use crate::output::discard_unfinished;
 use crate::qp::TimeLimit;
 use crate::solver::{
@@ -126,11 +126,11 @@ impl ContactSolver for Watched {
         self.solver.name()
     }
 
-    fn solve(&mut self, d: &Discretization, options: &SolverOptions) -> Result<Candidate, SolverError> {
+    fn solve(&mut self, d: &PairDiscretization, options: &SolverOptions) -> Result<Candidate, SolverError> {
         self.prepare(d).solve(options)
     }
 
-    fn prepare<'s>(&'s mut self, d: &'s Discretization) -> Box<dyn PreparedSolver + 's> {
+    fn prepare<'s>(&'s mut self, d: &'s PairDiscretization) -> Box<dyn PreparedSolver + 's> {
         let Self { solver, watch, give_up } = self;
         Box::new(WatchedPrepared { solver: solver.prepare(d), watch, give_up })
     }
@@ -342,17 +342,21 @@ mod tests {
             "counted"
         }
 
-        fn solve(&mut self, d: &Discretization, options: &SolverOptions) -> Result<Candidate, SolverError> {
+        fn solve(
+            &mut self,
+            d: &PairDiscretization,
+            options: &SolverOptions,
+        ) -> Result<Candidate, SolverError> {
             self.prepare(d).solve(options)
         }
 
-        fn prepare<'s>(&'s mut self, d: &'s Discretization) -> Box<dyn PreparedSolver + 's> {
+        fn prepare<'s>(&'s mut self, d: &'s PairDiscretization) -> Box<dyn PreparedSolver + 's> {
             self.0.fetch_add(1, Ordering::Relaxed);
             Box::new(Prepared(d))
         }
     }
 
-    struct Prepared<'d>(&'d Discretization);
+    struct Prepared<'d>(&'d PairDiscretization);
 
     impl PreparedSolver for Prepared<'_> {
         fn solve(&mut self, options: &SolverOptions) -> Result<Candidate, SolverError> {
@@ -364,7 +368,7 @@ mod tests {
     fn a_solver_with_somebody_beside_it_is_prepared_once_for_all_solves() {
         let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [4; 2], Pattern::Right).expect("a mesh");
         let problem = ContactProblem::builder().load(-15.0, 10.0).build().expect("a problem");
-        let d = Discretization::new(&problem, mesh).expect("a discretization");
+        let d = PairDiscretization::new(&problem, mesh).expect("a discretization");
         let count = Arc::new(AtomicUsize::new(0));
         let watch = Watch { events: mpsc::channel().0 };
         let mut solver = watch.over(Box::new(Counted(Arc::clone(&count))), late);

@@ -83,7 +83,7 @@ impl StackDiscretization {
     }
 
     /// By how much two quadrature rules differ in the loads, membrane by membrane; see
-    /// [`Discretization::quadrature_difference`](crate::discretization::Discretization::quadrature_difference).
+    /// [`PairDiscretization::quadrature_difference`](crate::discretization::PairDiscretization::quadrature_difference).
     pub fn quadrature_difference(&self) -> Vec<f64> {
         let of = |membrane: &MembraneData| {
             let profile = self.profiles[membrane.profile].iter().copied().fold(f64::INFINITY, f64::min);

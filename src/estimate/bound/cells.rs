@@ -1,7 +1,7 @@
 //! The bound triangle by triangle.
 
 use super::trace::Trace;
-use crate::discretization::{Discretization, Displacement};
+use crate::discretization::{Displacement, PairDiscretization};
 use crate::estimate::MeasureError;
 use crate::fem::{ElementMoments, gradient};
 use crate::flux::WedgeFluxes;
@@ -15,7 +15,7 @@ const OTHER: f64 = 7.0 / 108.0;
 
 /// What the bound is made from.
 pub(super) struct Cells<'a> {
-    pub(super) d: &'a Discretization,
+    pub(super) d: &'a PairDiscretization,
     pub(super) displacement: &'a Displacement,
     /// `lt` over vertices.
     pub(super) lambda: &'a [f64],

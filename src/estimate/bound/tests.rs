@@ -7,7 +7,7 @@ mod parts;
 mod rounding;
 
 use super::ErrorBound;
-use crate::discretization::{Discretization, Displacement};
+use crate::discretization::{Displacement, PairDiscretization};
 use crate::estimate::norms::cut_rule;
 use crate::problem::{ContactProblem, Domain};
 
@@ -15,7 +15,7 @@ use crate::problem::{ContactProblem, Domain};
 fn bound(
     problem: &ContactProblem,
     domain: &Domain,
-    d: &Discretization,
+    d: &PairDiscretization,
     displacement: &Displacement,
 ) -> ErrorBound {
     ErrorBound::new(problem, Some(domain), d, displacement).unwrap()

@@ -1,6 +1,6 @@
 //! What the boundary adds to the bound: data between the vertices, and a circle beyond the polygon of the mesh.
 
-use crate::discretization::Discretization;
+use crate::discretization::PairDiscretization;
 use crate::estimate::MeasureError;
 use crate::flux::WedgeFluxes;
 use crate::geometry::distance_sq;
@@ -57,7 +57,11 @@ struct Edge {
 }
 
 impl<'a> Trace<'a> {
-    pub(super) fn new(problem: &'a ContactProblem, domain: Option<&Domain>, d: &'a Discretization) -> Self {
+    pub(super) fn new(
+        problem: &'a ContactProblem,
+        domain: Option<&Domain>,
+        d: &'a PairDiscretization,
+    ) -> Self {
         let has_its_boundary_on = |circle: &Circle| {
             let mut kinds = d.mesh().points().iter().zip(d.mesh().kind());
             kinds.all(|(&point, &kind)| {

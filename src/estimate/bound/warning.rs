@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::discretization::{Discretization, StackDiscretization};
+use crate::discretization::{PairDiscretization, StackDiscretization};
 use crate::fem::LoadMoments;
 
 /// Why the bound may not hold: the quadrature has not seen enough of a load.
@@ -27,7 +27,7 @@ pub enum LoadWarning {
 
 impl LoadWarning {
     /// Those of both loads of `d`, beside a bound of the energy error on its mesh.
-    pub(crate) fn all(d: &Discretization, bound: f64) -> Vec<Self> {
+    pub(crate) fn all(d: &PairDiscretization, bound: f64) -> Vec<Self> {
         let loads = d.moments.iter().zip(d.quadrature_difference());
         (1..).zip(loads).filter_map(|(i, (load, difference))| Self::of(i, load, difference, bound)).collect()
     }

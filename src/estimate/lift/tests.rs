@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
 use super::*;
-use crate::action::{ContactSolution, certify};
+use crate::action::{PairSolution, certify_pair};
 use crate::discretization::principal_submatrix;
 use crate::estimate::norms::cut_rule;
 use crate::fem::stiffness;
@@ -31,7 +31,7 @@ fn at_rest() -> ContactProblem {
 }
 
 fn norm_on(mesh: &Mesh, refinements: usize, rho: fn([f64; 2]) -> f64) -> DualNorm {
-    let d = Discretization::new(&at_rest(), mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&at_rest(), mesh.clone()).unwrap();
     let sub = SubTriangulation::new(mesh).unwrap();
     dual_norm(&d, &sub, &plain(), refinements, |_, point| rho(point)).unwrap()
 }
@@ -89,7 +89,7 @@ fn the_iteration_agrees_with_a_direct_solve() {
 fn functionals_are_restricted_to_what_they_are_on_the_coarse_mesh() {
     let rho = |_: usize, [x, y]: [f64; 2]| 1.0 + x * x - 3.0 * y;
     let mesh = irregular(4);
-    let d = Discretization::new(&at_rest(), mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&at_rest(), mesh.clone()).unwrap();
     let sub = SubTriangulation::new(&mesh).unwrap();
     let (spaces, finest) = Spaces::new(&d, &sub, 1).unwrap();
     let [fine, change] = functionals(&finest, &plain(), rho);
@@ -110,15 +110,15 @@ fn functionals_are_restricted_to_what_they_are_on_the_coarse_mesh() {
 fn with_solution<T>(
     case: Case,
     cells: usize,
-    f: impl Fn(&Discretization, &SubTriangulation, &ExactSolution, &ContactSolution) -> T,
+    f: impl Fn(&PairDiscretization, &SubTriangulation, &ExactSolution, &PairSolution) -> T,
 ) -> T {
     let exact = exact(case);
     let ([mu1, mu2], [f1, f2]) = (exact.tension(), exact.load_functions());
     let problem = ContactProblem::builder().tension(mu1, mu2).load(f1, f2).height(exact.height_function());
     let mesh = irregular(cells);
-    let d = Discretization::new(&problem.build().unwrap(), mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem.build().unwrap(), mesh.clone()).unwrap();
     let candidate = ActiveSet.solve(&d, &SolverOptions::default()).unwrap();
-    let solution = certify(&d, candidate, 1e-8).unwrap();
+    let solution = certify_pair(&d, candidate, 1e-8).unwrap();
     f(&d, &SubTriangulation::new(&mesh).unwrap(), &exact, &solution)
 }
 
@@ -138,7 +138,7 @@ fn the_estimate_covers_what_two_more_refinements_add_to_a_discontinuous_error() 
 
 /// The figures of `rho` on `T_h`, `S_h` and `S_h` refined once.
 fn figures(
-    d: &Discretization,
+    d: &PairDiscretization,
     sub: &SubTriangulation,
     rule: &CutRule,
     rho: impl Fn(usize, [f64; 2]) -> f64 + Sync,
@@ -156,7 +156,7 @@ fn figures(
 #[test]
 fn a_lift_on_the_mesh_itself_is_blind() {
     let mesh = irregular(6);
-    let d = Discretization::new(&at_rest(), mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&at_rest(), mesh.clone()).unwrap();
     let sub = SubTriangulation::new(&mesh).unwrap();
     let rho = |t: usize, point: [f64; 2]| {
         let corners = mesh.corners(sub.triangle_of(t));

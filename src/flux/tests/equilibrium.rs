@@ -1,7 +1,7 @@
 //! Equilibrium with element means, by the divergence itself; zero mean residuals for any load.
 
 use super::samples::{cubic_problem, loads, meshes, solve, touches_in_part};
-use crate::discretization::{Discretization, Displacement};
+use crate::discretization::{Displacement, PairDiscretization};
 use crate::fem::{DEGREE_4, element_means};
 use crate::flux::{Flux, Reconstruction, Reconstructor};
 use crate::mesh::{Mesh, SubTriangulation, VertexKind};
@@ -16,7 +16,7 @@ const SEEN: f64 = 1e-2;
 
 /// The problem with the element means `f_ih` in place of `f_i`.
 struct MeanLoads {
-    d: Discretization,
+    d: PairDiscretization,
     /// `f_ih` on the triangles.
     means: Displacement,
     /// `int_K f_ih phi_a = |K| f_ih / 3`.
@@ -25,7 +25,7 @@ struct MeanLoads {
 
 impl MeanLoads {
     fn new(problem: &ContactProblem, mesh: &Mesh) -> Self {
-        let mut d = Discretization::new(problem, mesh.clone()).unwrap();
+        let mut d = PairDiscretization::new(problem, mesh.clone()).unwrap();
         let means =
             [0, 1].map(|i| element_means(mesh, &problem.as_pair().expect("a pair").load()[i]).unwrap());
         let integrals = [0, 1].map(|i: usize| {
@@ -97,7 +97,7 @@ fn the_divergence_is_the_mean_load_and_the_action() {
 fn residuals_have_the_mean_zero_on_every_triangle_for_any_load() {
     let problem = cubic_problem();
     for (name, mesh) in meshes() {
-        let d = Discretization::new(&problem, mesh.clone()).unwrap();
+        let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
         let sub = SubTriangulation::new(&mesh).unwrap();
         let solution = solve(&d);
         let means =
@@ -122,7 +122,7 @@ fn residuals_have_the_mean_zero_on_every_triangle_for_any_load() {
 fn the_share_of_a_wedge_is_the_load_weighted_by_the_hat_function() {
     let problem = cubic_problem();
     let mesh = crate::mesh::samples::irregular(6);
-    let d = Discretization::new(&problem, mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
     let sub = SubTriangulation::new(&mesh).unwrap();
     let solution = solve(&d);
     let reconstructor = Reconstructor::new(&d, &sub, loads(&problem, &mesh));

@@ -1,7 +1,7 @@
 //! The identities of section 4.2 on every mesh, and faults that each of them sees.
 
 use super::samples::{Reconstructed, cubic_problem, loads, meshes, solve, touches_in_part};
-use crate::discretization::{Discretization, Displacement};
+use crate::discretization::{Displacement, PairDiscretization};
 use crate::flux::{Flux, FluxDefects, Reconstruction, discrete_flux};
 use crate::mesh::samples::irregular;
 use crate::mesh::{Mesh, SubTriangulation, VertexKind};
@@ -15,7 +15,7 @@ const SEEN: f64 = 1e-6;
 /// Solves the cubic problem on `mesh` and hands over the fluxes of one kind.
 fn with_fluxes(mesh: &Mesh, kind: Reconstruction, check: impl Fn(Reconstructed)) {
     let problem = cubic_problem();
-    let d = Discretization::new(&problem, mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
     let sub = SubTriangulation::new(mesh).unwrap();
     let solution = solve(&d);
     assert!(touches_in_part(&d, &solution));

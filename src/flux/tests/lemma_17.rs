@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::samples::{cubic_problem, loads, meshes, solve, touches_in_part};
-use crate::action::ContactSolution;
-use crate::discretization::{Discretization, Displacement};
+use crate::action::PairSolution;
+use crate::discretization::{Displacement, PairDiscretization};
 use crate::fem::{DEGREE_4, element_means};
 use crate::flux::{Flux, Reconstruction, Reconstructor};
 use crate::mesh::samples::irregular;
@@ -34,8 +34,8 @@ fn integral(mesh: &Mesh, t: usize, f: impl Fn([f64; 2]) -> f64) -> f64 {
 
 /// Both sides of (4.15) over the vertices for one membrane, with `exact` the function `mu_i Lap u_i - (-1)^i lambda`.
 fn both_sides(
-    d: &Discretization,
-    solution: &ContactSolution,
+    d: &PairDiscretization,
+    solution: &PairSolution,
     flux: &Flux,
     membrane: usize,
     f: &Function,
@@ -59,7 +59,7 @@ fn both_sides(
 }
 
 /// The largest difference over interior vertices, and the largest right side.
-fn compare(d: &Discretization, [left, right]: &Displacement) -> [f64; 2] {
+fn compare(d: &PairDiscretization, [left, right]: &Displacement) -> [f64; 2] {
     let over = |value: &dyn Fn(usize) -> f64| largest(d.interior().iter().map(|&a| value(a)));
     [over(&|a| (left[a] - right[a]).abs()), over(&|a| right[a].abs())]
 }
@@ -69,7 +69,7 @@ fn compare(d: &Discretization, [left, right]: &Displacement) -> [f64; 2] {
 fn lemma_17_with_loads_that_oscillate() {
     let problem = cubic_problem();
     for (name, mesh) in meshes() {
-        let d = Discretization::new(&problem, mesh.clone()).unwrap();
+        let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
         let sub = SubTriangulation::new(&mesh).unwrap();
         let solution = solve(&d);
         assert!(touches_in_part(&d, &solution), "{name}");
@@ -96,7 +96,7 @@ fn lemma_17_against_an_exact_solution() {
     let exact = Case::Disk.solution(&BTreeMap::new()).unwrap();
     let problem: ContactProblem = exact.problem().unwrap();
     let mesh = disk([0.0, 0.0], 1.0, 9).unwrap();
-    let d = Discretization::new(&problem, mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
     let sub = SubTriangulation::new(&mesh).unwrap();
     let solution = solve(&d);
     assert!(touches_in_part(&d, &solution));
@@ -129,7 +129,7 @@ fn energy_splits_into_sum_and_gap() {
     let mut random = Random::new(7);
     for (mu1, mu2) in [(1.0, 3.0), (1.0, 1.0), (1e-3, 50.0)] {
         let problem = ContactProblem::builder().tension(mu1, mu2).build().unwrap();
-        let d = Discretization::new(&problem, mesh.clone()).unwrap();
+        let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
         let square = |v: &[f64]| (0..v.len()).map(|a| v[a] * d.stiffness_row(a, |b| v[b])).sum::<f64>();
         let [u1, u2] =
             [(); 2].map(|()| (0..mesh.points().len()).map(|_| random.between(-1.0, 1.0)).collect::<Vec<_>>());

@@ -3,7 +3,7 @@
 use proptest::prelude::*;
 
 use super::samples::{Reconstructed, loads, moved, solve};
-use crate::discretization::Discretization;
+use crate::discretization::PairDiscretization;
 use crate::flux::{FluxDefects, Reconstruction, Reconstructor};
 use crate::mesh::samples::square;
 use crate::mesh::{Mesh, SubTriangulation, VertexKind, polygon};
@@ -54,7 +54,7 @@ proptest! {
 
     #[test]
     fn solutions_have_fluxes_with_all_identities(mesh in prop_oneof![jittered(), polygonal()], problem in data()) {
-        let d = Discretization::new(&problem, mesh.clone()).unwrap();
+        let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
         let sub = SubTriangulation::new(&mesh).unwrap();
         let solution = solve(&d);
         for kind in Reconstruction::ALL {
@@ -72,7 +72,7 @@ proptest! {
         problem in data(),
         seed in any::<u64>(),
     ) {
-        let d = Discretization::new(&problem, mesh.clone()).unwrap();
+        let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
         let sub = SubTriangulation::new(&mesh).unwrap();
         let mut random = Random::new(seed);
         let scale = d.scales().displacement;

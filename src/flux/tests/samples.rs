@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use crate::action::{ContactSolution, certify};
-use crate::discretization::Discretization;
+use crate::action::{PairSolution, certify_pair};
+use crate::discretization::PairDiscretization;
 use crate::fem::element_loads;
 use crate::flux::{Flux, FluxDefects, Reconstruction, Reconstructor};
 use crate::mesh::samples::{irregular, renumbered, square, square_without};
@@ -64,25 +64,25 @@ pub(super) fn loads(problem: &ContactProblem, mesh: &Mesh) -> [Vec<[f64; 3]>; 2]
 }
 
 /// The certified solution.
-pub(super) fn solve(d: &Discretization) -> ContactSolution {
+pub(super) fn solve(d: &PairDiscretization) -> PairSolution {
     let candidate: Candidate = ActiveSet.solve(d, &SolverOptions::default()).unwrap();
-    certify(d, candidate, TOLERANCE).unwrap_or_else(|rejected| panic!("{rejected}"))
+    certify_pair(d, candidate, TOLERANCE).unwrap_or_else(|rejected| panic!("{rejected}"))
 }
 
 /// A solved problem with its fluxes of one kind.
 pub(super) struct Reconstructed<'a> {
     pub(super) reconstructor: Reconstructor<'a>,
-    pub(super) solution: &'a ContactSolution,
+    pub(super) solution: &'a PairSolution,
     pub(super) kind: Reconstruction,
     pub(super) flux: [Flux<'a>; 2],
 }
 
 impl<'a> Reconstructed<'a> {
     pub(super) fn new(
-        d: &'a Discretization,
+        d: &'a PairDiscretization,
         sub: &'a SubTriangulation,
         load: [Vec<[f64; 3]>; 2],
-        solution: &'a ContactSolution,
+        solution: &'a PairSolution,
         kind: Reconstruction,
     ) -> Self {
         let reconstructor = Reconstructor::new(d, sub, load);
@@ -97,7 +97,7 @@ impl<'a> Reconstructed<'a> {
 }
 
 /// Whether some interior vertices touch and others do not: only then does the sign of the action matter.
-pub(super) fn touches_in_part(d: &Discretization, solution: &ContactSolution) -> bool {
+pub(super) fn touches_in_part(d: &PairDiscretization, solution: &PairSolution) -> bool {
     let touching = d.interior().iter().filter(|&&a| solution.lambda()[a] > 0.0).count();
     0 < touching && touching < d.interior().len()
 }

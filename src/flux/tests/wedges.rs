@@ -1,7 +1,7 @@
 //! The full reconstruction wedge by wedge is that on `S_h`.
 
 use super::samples::{cubic_problem, loads, meshes, solve};
-use crate::discretization::Discretization;
+use crate::discretization::PairDiscretization;
 use crate::flux::{Reconstruction, Reconstructor, WedgeFluxes, discrete_flux};
 use crate::mesh::{Mesh, SubTriangulation, VertexKind, VertexTriangles};
 use crate::problem::ContactProblem;
@@ -12,7 +12,7 @@ const ROUNDING: f64 = 1e-11;
 /// The largest differences, relative, of the distances to `-mu_i grad u_ih` on triangles and of the fluxes through the
 /// boundary; `kind` on `S_h` against the wedges.
 fn differences(problem: &ContactProblem, mesh: &Mesh, kind: Reconstruction) -> [f64; 2] {
-    let d = Discretization::new(problem, mesh.clone()).unwrap();
+    let d = PairDiscretization::new(problem, mesh.clone()).unwrap();
     let solution = solve(&d);
     let sub = SubTriangulation::new(mesh).unwrap();
     let fluxes =

@@ -1,5 +1,5 @@
 use super::*;
-use crate::discretization::Discretization;
+use crate::discretization::PairDiscretization;
 use crate::mesh::samples::irregular;
 use crate::mesh::{Bisection, Mesh, Pattern, rectangle};
 use crate::multigrid::hierarchy::Level;
@@ -15,7 +15,7 @@ const CYCLE: f64 = 5.0;
 
 fn hierarchy_of(mesh: Mesh) -> Hierarchy {
     let problem = ContactProblem::builder().load(1.0, 1.0).height(0.0).build().unwrap();
-    Hierarchy::new(&Discretization::new(&problem, mesh).unwrap())
+    Hierarchy::new(&PairDiscretization::new(&problem, mesh).unwrap())
 }
 
 fn square(cells: usize) -> Mesh {

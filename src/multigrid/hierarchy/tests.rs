@@ -15,7 +15,7 @@ fn unit_square(size: f64) -> Mesh {
 
 fn hierarchy_of(mesh: &Mesh) -> Hierarchy {
     let problem = ContactProblem::builder().tension(1.0, 1.0).load(1.0, 1.0).height(0.0).build().unwrap();
-    Hierarchy::new(&Discretization::new(&problem, mesh.clone()).unwrap())
+    Hierarchy::new(&PairDiscretization::new(&problem, mesh.clone()).unwrap())
 }
 
 /// Every entry of the level's matrix, rows and columns by vertices of the mesh that it belongs to.

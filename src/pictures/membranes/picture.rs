@@ -1,6 +1,6 @@
 //! What is drawn.
 
-use crate::action::ContactSolution;
+use crate::action::PairSolution;
 use crate::mesh::Mesh;
 
 /// Width and height of the picture in pixels.
@@ -27,7 +27,7 @@ pub struct Picture<'a> {
 
 impl<'a> Picture<'a> {
     /// That of a solution on its mesh.
-    pub fn of(title: &'a str, mesh: &'a Mesh, solution: &'a ContactSolution) -> Self {
+    pub fn of(title: &'a str, mesh: &'a Mesh, solution: &'a PairSolution) -> Self {
         let [upper, lower] = solution.displacement();
         Self {
             title,

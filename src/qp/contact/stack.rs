@@ -69,7 +69,7 @@ fn gap_matrix(d: &StackDiscretization) -> CsMat<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::discretization::Discretization;
+    use crate::discretization::PairDiscretization;
     use crate::mesh::samples::{assorted, irregular};
     use crate::problem::{ContactProblem, Field, Function, Membrane};
     use crate::qp::contact_qp;
@@ -93,7 +93,7 @@ mod tests {
     fn the_program_of_the_pair_is_that_of_the_pair_bit_by_bit() {
         for mesh in assorted().into_iter().chain([irregular(9)]) {
             let pair = pair();
-            let expected = contact_qp(&Discretization::new(&pair, mesh.clone()).unwrap());
+            let expected = contact_qp(&PairDiscretization::new(&pair, mesh.clone()).unwrap());
             assert_equal(&stack_qp(&StackDiscretization::new(&pair, mesh).unwrap()), &expected);
         }
     }

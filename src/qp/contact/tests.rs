@@ -14,7 +14,7 @@ fn problem(f1: f64, f2: f64) -> ContactProblem {
 }
 
 fn qp(mesh: &Mesh, problem: &ContactProblem) -> QpProblem {
-    contact_qp(&Discretization::new(problem, mesh.clone()).unwrap())
+    contact_qp(&PairDiscretization::new(problem, mesh.clone()).unwrap())
 }
 
 fn dense(matrix: &CsMat<f64>) -> Vec<Vec<f64>> {
@@ -77,7 +77,7 @@ fn three_interior_vertices_by_hand() {
 #[test]
 fn planes_are_at_rest() {
     let mesh = irregular(5);
-    let d = Discretization::new(&problem(0.0, 0.0), mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem(0.0, 0.0), mesh.clone()).unwrap();
     let qp = contact_qp(&d);
     let n = d.interior().len();
     let mut x = vec![0.0; 2 * n];
@@ -99,7 +99,7 @@ fn planes_are_at_rest() {
 #[test]
 fn the_objective_is_the_energy_and_its_gradient_the_imbalance() {
     let mesh = irregular(4);
-    let d = Discretization::new(&problem(-4.0, 8.0), mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem(-4.0, 8.0), mesh.clone()).unwrap();
     let qp = contact_qp(&d);
     let n = d.interior().len();
     let x: Vec<f64> = (0..2 * n).map(|k| (k as f64).cos()).collect();
@@ -122,7 +122,7 @@ fn the_objective_is_the_energy_and_its_gradient_the_imbalance() {
 #[test]
 fn scales_are_those_of_the_data() {
     let mesh = square(4);
-    let d = Discretization::new(&problem(-4.0, 8.0), mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem(-4.0, 8.0), mesh.clone()).unwrap();
     let (scales, qp) = (d.scales(), contact_qp(&d));
     assert_eq!(qp.primal_scale(), scales.displacement);
     assert_eq!(qp.dual_scale(), scales.force_density * scales.dual_area);

@@ -10,13 +10,13 @@ use crate::problem::{ContactProblem, Function};
 use crate::qp::contact_qp;
 
 /// A program with numbers that have no short decimal form.
-fn with_program(check: impl FnOnce(&Mesh, &Discretization, &QpProblem)) {
+fn with_program(check: impl FnOnce(&Mesh, &PairDiscretization, &QpProblem)) {
     let mesh = irregular(4);
     let height = Function::from_fn(|x, y| 1.0 / 3.0 + x + y);
     let load = Function::from_fn(|x, y| (x + 2.0 * y).exp());
     let problem =
         ContactProblem::builder().tension(1.1, 0.7).load(load, -3.3).height(height).build().unwrap();
-    let d = Discretization::new(&problem, mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
     check(&mesh, &d, &contact_qp(&d));
 }
 
@@ -48,7 +48,7 @@ fn both_triangles(upper: &CsMat<f64>) -> CsMat<f64> {
 struct Archive(ZipArchive<Cursor<Vec<u8>>>);
 
 impl Archive {
-    fn of(d: &Discretization, qp: &QpProblem) -> Self {
+    fn of(d: &PairDiscretization, qp: &QpProblem) -> Self {
         let mut bytes = Cursor::new(Vec::new());
         write_npz(d, qp, &mut bytes).unwrap();
         bytes.set_position(0);

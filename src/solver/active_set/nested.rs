@@ -3,7 +3,7 @@
 use sprs::CsMat;
 
 use super::obstacle::Obstacle;
-use crate::discretization::Discretization;
+use crate::discretization::PairDiscretization;
 use crate::multigrid::cholesky::NotFactored;
 use crate::multigrid::hierarchy::{Hierarchy, Level};
 use crate::qp::Limits;
@@ -17,7 +17,7 @@ const SWEEPS: usize = 8;
 ///
 /// Slight gaps below zero are overlooked there: the next level decides on them anew.
 pub(super) fn guess_from_coarser_levels(
-    d: &Discretization,
+    d: &PairDiscretization,
     limits: &Limits,
 ) -> Result<(Vec<bool>, Vec<usize>), NotFactored> {
     let hierarchy = Hierarchy::new(d);

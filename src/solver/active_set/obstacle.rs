@@ -3,7 +3,7 @@
 use sprs::CsMat;
 
 use super::repair::Repair;
-use crate::discretization::{Discretization, Displacement};
+use crate::discretization::{Displacement, PairDiscretization};
 use crate::multigrid::cholesky::{Cholesky, NotFactored};
 use crate::qp::{Limits, Status};
 
@@ -138,7 +138,11 @@ impl<'k> Obstacle<'k> {
 }
 
 /// The vertices that touch, as displacements and multipliers have it.
-pub(in crate::solver) fn guess(d: &Discretization, [u1, u2]: &Displacement, multiplier: &[f64]) -> Vec<bool> {
+pub(in crate::solver) fn guess(
+    d: &PairDiscretization,
+    [u1, u2]: &Displacement,
+    multiplier: &[f64],
+) -> Vec<bool> {
     let scales = d.scales();
     let touches = |(&a, y): (&usize, &f64)| {
         let action = y / (d.dual_area()[a] * scales.force_density);

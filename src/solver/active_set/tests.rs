@@ -3,7 +3,7 @@ use web_time::Instant;
 
 use super::obstacle::SLIGHT;
 use super::*;
-use crate::action::certify;
+use crate::action::certify_pair;
 use crate::mesh::samples::irregular;
 use crate::mesh::{Bisection, Mesh, Pattern, l_shape, rectangle};
 use crate::problem::{Case, ContactProblem, Function};
@@ -79,7 +79,7 @@ fn few_factorisations_are_needed_on_each_level() {
     let load = Function::from_fn(|x: f64, y: f64| 30.0 * (12.566 * x).sin() * (9.425 * y).sin());
     let problem = ContactProblem::builder().tension(1.0, 1.0).load(-10.0, load).height(0.05).build().unwrap();
     let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [128; 2], Pattern::Right).unwrap();
-    let d = Discretization::new(&problem, mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
     let found = ActiveSet.solve(&d, &SolverOptions::default()).unwrap();
     let steps = &found.statistics.level_iterations;
     assert_eq!(steps.len(), 7);
@@ -97,10 +97,10 @@ fn biactive_data_and_obtuse_triangles_are_solved() {
         let parameters = [("q".to_string(), q)].into_iter().collect();
         let problem = Case::FullContact.solution(&parameters).unwrap().problem().unwrap();
         for mesh in [rectangle([0.0, 0.0], [1.0, 1.0], [24; 2], Pattern::Right).unwrap(), irregular(16)] {
-            let d = Discretization::new(&problem, mesh.clone()).unwrap();
+            let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
             let found = ActiveSet.solve(&d, &SolverOptions::default()).unwrap();
             assert_eq!(found.statistics.status, Status::Solved);
-            assert!(certify(&d, found, TOLERANCE).is_ok());
+            assert!(certify_pair(&d, found, TOLERANCE).is_ok());
         }
     }
     // A long thin rectangle in square cells' place: obtuse once it is sheared.
@@ -108,11 +108,11 @@ fn biactive_data_and_obtuse_triangles_are_solved() {
     let sheared = flat.points().iter().map(|&[x, y]| [x + 3.0 * y, y]).collect();
     let mesh = Mesh::new(sheared, flat.triangles().to_vec()).unwrap();
     let problem = ContactProblem::builder().tension(1.0, 2.0).load(-30.0, 10.0).height(0.1).build().unwrap();
-    let d = Discretization::new(&problem, mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
     let positive = d.stiffness().iter().filter(|&(&k, (i, j))| i != j && k > 0.1).count();
     assert!(positive > 100, "K is no M-matrix");
     let found = ActiveSet.solve(&d, &SolverOptions::default()).unwrap();
-    assert!(certify(&d, found, TOLERANCE).is_ok());
+    assert!(certify_pair(&d, found, TOLERANCE).is_ok());
 }
 
 /// An L-shape whose triangles at the re-entrant corner are bisected again and again.
@@ -133,9 +133,9 @@ fn contact_is_found_at_the_tip_of_a_deep_mesh() {
     let with_ancestry = bisected_at_the_corner(DEEP);
     let without = Mesh::new(with_ancestry.points().to_vec(), with_ancestry.triangles().to_vec()).unwrap();
     for mesh in [with_ancestry, without] {
-        let d = Discretization::new(&problem, mesh.clone()).unwrap();
+        let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
         let found = ActiveSet.solve(&d, &SolverOptions::default()).unwrap();
-        let solution = certify(&d, found, TOLERANCE).expect("certified");
+        let solution = certify_pair(&d, found, TOLERANCE).expect("certified");
         assert!(d.interior().iter().all(|&a| solution.contact()[a]), "the load closes the gap everywhere");
         // Vertices near the tip that are left out pass through by less than a rounded displacement, but not by rounding.
         let near = |a: usize| mesh.points()[a][0].hypot(mesh.points()[a][1]) < TIP;
@@ -147,6 +147,6 @@ fn contact_is_found_at_the_tip_of_a_deep_mesh() {
         let cut = settle(&d, active, &limits(1)).unwrap();
         let statistics = Statistics::of("cut", cut.status);
         let cut = Candidate { displacement: cut.displacement, multiplier: cut.multiplier, statistics };
-        assert!(certify(&d, cut, TOLERANCE).is_err(), "it is no solution");
+        assert!(certify_pair(&d, cut, TOLERANCE).is_err(), "it is no solution");
     }
 }

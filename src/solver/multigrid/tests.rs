@@ -3,7 +3,7 @@ use std::collections::BTreeMap;
 use proptest::prelude::*;
 
 use super::*;
-use crate::action::certify;
+use crate::action::certify_pair;
 use crate::mesh::samples::irregular;
 use crate::mesh::{Mesh, MeshSize, Pattern, disk, generate, l_shape, rectangle};
 use crate::multigrid::hierarchy::{Hierarchy, LONGEST, Values};
@@ -52,7 +52,7 @@ fn meshes() -> Vec<Mesh> {
     ]
 }
 
-fn solve_by(solver: &mut dyn ContactSolver, d: &Discretization, options: &SolverOptions) -> Candidate {
+fn solve_by(solver: &mut dyn ContactSolver, d: &PairDiscretization, options: &SolverOptions) -> Candidate {
     solver.solve(d, options).expect("it runs")
 }
 
@@ -70,11 +70,11 @@ fn it_finds_what_the_active_set_method_finds() {
     for mesh in meshes() {
         for (tension, height) in [([1.0, 1.0], 0.05), ([1.0, 300.0], 0.0), ([7.0, 0.2], 0.3)] {
             let problem = problem(tension, height);
-            let d = Discretization::new(&problem, mesh.clone()).unwrap();
+            let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
             let found = solve_by(&mut Multigrid, &d, &options());
             assert!(falls(&found.statistics.energies), "{:?}", found.statistics.energies);
-            let found = certify(&d, found, TOLERANCE).unwrap();
-            let exact = certify(&d, solve_by(&mut ActiveSet, &d, &options()), TOLERANCE).unwrap();
+            let found = certify_pair(&d, found, TOLERANCE).unwrap();
+            let exact = certify_pair(&d, solve_by(&mut ActiveSet, &d, &options()), TOLERANCE).unwrap();
             assert_eq!(found.contact(), exact.contact());
             let scale = d.scales().force_density;
             let pairs = found.lambda().iter().zip(exact.lambda());
@@ -89,7 +89,7 @@ fn cycles_do_not_depend_on_the_size_of_the_mesh() {
     for cells in [16, 32, 64, 128] {
         for pattern in [Pattern::Right, Pattern::Crossed] {
             let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [cells; 2], pattern).unwrap();
-            let d = Discretization::new(&problem, mesh.clone()).unwrap();
+            let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
             let statistics = solve_by(&mut Multigrid, &d, &options()).statistics;
             assert_eq!(statistics.status, Status::Solved);
             assert!(statistics.iterations <= CYCLES, "{cells} cells: {}", statistics.iterations);
@@ -99,7 +99,7 @@ fn cycles_do_not_depend_on_the_size_of_the_mesh() {
     let biactive = Case::Annulus.solution(&BTreeMap::new()).unwrap().problem().unwrap();
     for cells in [32, 64, 128, 256] {
         let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [cells; 2], Pattern::Right).unwrap();
-        let d = Discretization::new(&biactive, mesh.clone()).unwrap();
+        let d = PairDiscretization::new(&biactive, mesh.clone()).unwrap();
         let iterations = solve_by(&mut Multigrid, &d, &options()).statistics.iterations;
         assert!(iterations <= CYCLES, "annulus, {cells} cells: {iterations}");
     }
@@ -107,17 +107,17 @@ fn cycles_do_not_depend_on_the_size_of_the_mesh() {
     let ring = Case::LShape.solution(&BTreeMap::new()).unwrap().problem().unwrap();
     for cells in [64, 128, 256] {
         let mesh = l_shape(2.0, cells, Pattern::Right).unwrap();
-        let d = Discretization::new(&ring, mesh.clone()).unwrap();
+        let d = PairDiscretization::new(&ring, mesh.clone()).unwrap();
         let statistics = solve_by(&mut Multigrid, &d, &options()).statistics;
         assert_eq!(statistics.status, Status::Solved);
         assert!(statistics.iterations <= CORNER_CYCLES, "ring, {cells} cells: {}", statistics.iterations);
     }
     // Stopped early, it says so and is not certified.
     let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [32; 2], Pattern::Right).unwrap();
-    let d = Discretization::new(&problem, mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
     let stopped = solve_by(&mut Multigrid, &d, &SolverOptions { max_iterations: Some(2), ..options() });
     assert_eq!((stopped.statistics.status, stopped.statistics.iterations), (Status::IterationLimit, 2));
-    assert!(certify(&d, stopped, TOLERANCE).is_err());
+    assert!(certify_pair(&d, stopped, TOLERANCE).is_err());
 }
 
 #[test]
@@ -137,7 +137,7 @@ fn a_change_of_the_energy_is_known_where_the_energies_are_not() {
     const SUM_ROUNDING: f64 = 1e-10;
     let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [16; 2], Pattern::Right).unwrap();
     let problem = problem([1.0, 1.0], 0.05);
-    let hierarchy = Hierarchy::new(&Discretization::new(&problem, mesh.clone()).unwrap());
+    let hierarchy = Hierarchy::new(&PairDiscretization::new(&problem, mesh.clone()).unwrap());
     let level = &hierarchy.levels()[hierarchy.finest()];
     let mut random = Random::new(3);
     let mut vector = || -> Vec<f64> {
@@ -166,7 +166,7 @@ fn a_change_of_the_energy_is_known_where_the_energies_are_not() {
 fn a_warm_start_needs_no_cycles_from_its_own_answer() {
     let problem = problem([1.0, 2.0], 0.05);
     let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [32; 2], Pattern::Right).unwrap();
-    let d = Discretization::new(&problem, mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
     let cold = solve_by(&mut Multigrid, &d, &options());
     let again = SolverOptions { warm_start: Some(cold.clone().into()), ..options() };
     assert!(cold.statistics.iterations > 3);
@@ -178,8 +178,8 @@ fn a_warm_start_needs_no_cycles_from_its_own_answer() {
 fn on_stretched_triangles_the_levels_are_algebraic() {
     let mesh = rectangle([0.0, 0.0], [1.0, 0.01], [64; 2], Pattern::Right).unwrap();
     let problem = ContactProblem::builder().tension(1.0, 3.0).load(-1.5e5, 1e5).height(0.1).build().unwrap();
-    let d = Discretization::new(&problem, mesh.clone()).unwrap();
-    let status = |levels: fn(&Discretization) -> Hierarchy| {
+    let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
+    let status = |levels: fn(&PairDiscretization) -> Hierarchy| {
         let candidate = solve_on(&levels(&d), &d, &options(), Instant::now()).expect("it runs");
         candidate.statistics.status
     };
@@ -196,7 +196,7 @@ fn on_stretched_triangles_the_levels_are_algebraic() {
     assert_eq!(again.statistics.stalled, *tried, "the record stays");
     assert_eq!(first.displacement, candidate.displacement);
     assert_eq!(again.displacement, candidate.displacement);
-    assert!(certify(&d, candidate, TOLERANCE).is_ok());
+    assert!(certify_pair(&d, candidate, TOLERANCE).is_ok());
 }
 
 /// What stalled counts where it was spent, and is named once, also when it has stalled before.
@@ -219,14 +219,18 @@ fn the_seconds_of_what_stalled_are_those_of_setup_and_of_solving() {
 #[test]
 fn a_prepared_solver_finds_what_the_solver_finds() {
     let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [32; 2], Pattern::Right).unwrap();
-    let d = Discretization::new(&problem([1.0, 2.0], 0.05), mesh).unwrap();
+    let d = PairDiscretization::new(&problem([1.0, 2.0], 0.05), mesh).unwrap();
     let mut multigrid = Multigrid;
     let mut prepared = multigrid.prepare(&d);
     for tolerance in [1e-3, 1e-9, 1e-6] {
         let options = SolverOptions { tolerance, ..SolverOptions::default() };
         let found = prepared.solve(&options).expect("it runs");
         assert_eq!(found.displacement, solve_by(&mut Multigrid, &d, &options).displacement);
-        assert_eq!(certify(&d, found, 1e-9).is_ok(), tolerance == 1e-9, "the tolerance is that asked for");
+        assert_eq!(
+            certify_pair(&d, found, 1e-9).is_ok(),
+            tolerance == 1e-9,
+            "the tolerance is that asked for"
+        );
     }
 }
 
@@ -234,7 +238,7 @@ fn a_prepared_solver_finds_what_the_solver_finds() {
 #[test]
 fn a_slow_pace_is_kept_and_none_is_given_up() {
     let mesh = rectangle([0.0, 0.0], [1.55, 0.5], [2, 8], Pattern::Crossed).unwrap();
-    let d = Discretization::new(&problem([1.0, 1.0], 0.0), mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem([1.0, 1.0], 0.0), mesh.clone()).unwrap();
     let slow = solve_on(&Hierarchy::new(&d), &d, &options(), Instant::now()).expect("it runs");
     assert_eq!(slow.statistics.status, Status::Solved);
     assert!(slow.statistics.iterations > 2 * CYCLES, "it is slow: {}", slow.statistics.iterations);
@@ -248,7 +252,7 @@ fn a_slow_pace_is_kept_and_none_is_given_up() {
 fn results_do_not_depend_on_the_number_of_threads() {
     let problem = problem([1.0, 2.0], 0.05);
     let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [200, 120], Pattern::Right).unwrap();
-    let d = Discretization::new(&problem, mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
     let [one, four] = [1, 4].map(|threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| solve_by(&mut Multigrid, &d, &options()))
@@ -311,7 +315,7 @@ fn truncated_matrices_follow_every_change_of_the_contact_set() {
     let problem = problem([1.0, 1.0], 0.05);
     let square = rectangle([0.0, 0.0], [1.0, 1.0], [16; 2], Pattern::Right).unwrap();
     for mesh in [square, irregular(4).refine().unwrap().mesh, irregular(13)] {
-        let d = Discretization::new(&problem, mesh.clone()).unwrap();
+        let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
         let hierarchy = Hierarchy::new(&d);
         let mut truncation = Truncation::new(&hierarchy);
         truncation.reset(hierarchy.finest());
@@ -335,7 +339,7 @@ fn truncated_rows_have_no_part_in_a_stencil() {
     /// Rounding of products of size ten.
     const ROUNDING: f64 = 1e-12;
     let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [128; 2], Pattern::Right).unwrap();
-    let d = Discretization::new(&problem([1.0, 1.0], 0.05), mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem([1.0, 1.0], 0.05), mesh.clone()).unwrap();
     let hierarchy = Hierarchy::new(&d);
     let finest = hierarchy.finest();
     let mut truncation = Truncation::new(&hierarchy);
@@ -379,9 +383,9 @@ proptest! {
         problem in drawn(|height| Function::Constant(10.0 * height)),
     ) {
         let mesh = (0..refinements).fold(irregular(cells), |mesh, _| mesh.refine().unwrap().mesh);
-        let d = Discretization::new(&problem, mesh.clone()).unwrap();
+        let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
         let found = solve_by(&mut Multigrid, &d, &options());
         prop_assert!(falls(&found.statistics.energies), "{:?}", found.statistics.energies);
-        prop_assert!(certify(&d, found, TOLERANCE).is_ok());
+        prop_assert!(certify_pair(&d, found, TOLERANCE).is_ok());
     }
 }

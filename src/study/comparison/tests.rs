@@ -22,8 +22,8 @@ fn meshes() -> [Mesh; 2] {
     [4, 8].map(|n| square_mesh(n).expect("a valid size"))
 }
 
-fn discretizations(problem: &ContactProblem, meshes: &[Mesh]) -> Vec<Discretization> {
-    meshes.iter().map(|mesh| Discretization::new(problem, mesh.clone()).expect("valid data")).collect()
+fn discretizations(problem: &ContactProblem, meshes: &[Mesh]) -> Vec<PairDiscretization> {
+    meshes.iter().map(|mesh| PairDiscretization::new(problem, mesh.clone()).expect("valid data")).collect()
 }
 
 /// Runs a solver on all meshes of the built-in family.
@@ -43,7 +43,7 @@ impl<F: FnMut(Candidate) -> Result<Candidate, SolverError> + Send> ContactSolver
         "altered"
     }
 
-    fn solve(&mut self, d: &Discretization, options: &SolverOptions) -> Result<Candidate, SolverError> {
+    fn solve(&mut self, d: &PairDiscretization, options: &SolverOptions) -> Result<Candidate, SolverError> {
         self.0(ActiveSet.solve(d, options)?)
     }
 }

@@ -3,8 +3,8 @@
 use std::io::Cursor;
 use std::io::Write;
 
-use membrane_contact::action::certify;
-use membrane_contact::discretization::Discretization;
+use membrane_contact::action::certify_pair;
+use membrane_contact::discretization::PairDiscretization;
 use membrane_contact::fem::element_loads;
 use membrane_contact::flux::{FluxDefects, Reconstruction, Reconstructor};
 use membrane_contact::mesh::{DualMesh, SubTriangulation};
@@ -29,7 +29,7 @@ const ABSENT: [&str; 3] = ["choice", "polish", "relative_error_bound"];
 const IDENTITY: f64 = 1e-6;
 
 /// What is wrong with anything that is made of a solution, but for pictures, which take longer.
-pub fn complaints(hostile: &Hostile, d: &Discretization, bounded: &Bounded) -> Vec<String> {
+pub fn complaints(hostile: &Hostile, d: &PairDiscretization, bounded: &Bounded) -> Vec<String> {
     let mut all = absent_numbers(&summary(hostile.name, d, bounded));
     all.extend(not_finite(bounded));
     all.extend(files(d, bounded).err());
@@ -39,7 +39,7 @@ pub fn complaints(hostile: &Hostile, d: &Discretization, bounded: &Bounded) -> V
 }
 
 /// The summary as JSON, where NaN and infinity are `null`.
-pub fn summary(title: &str, d: &Discretization, bounded: &Bounded) -> Value {
+pub fn summary(title: &str, d: &PairDiscretization, bounded: &Bounded) -> Value {
     let Bounded { solution, bound, tolerance, .. } = bounded;
     let summary = Summary::new(title, d, *tolerance, Ok(solution), Seconds::default(), Some(bound));
     let mut json = Vec::new();
@@ -82,7 +82,7 @@ fn not_finite(Bounded { solution, bound, .. }: &Bounded) -> Vec<String> {
     bad.map(|(name, _)| format!("{name} is not finite somewhere")).collect()
 }
 
-fn files(d: &Discretization, bounded: &Bounded) -> Result<(), String> {
+fn files(d: &PairDiscretization, bounded: &Bounded) -> Result<(), String> {
     let Bounded { solution, bound, .. } = bounded;
     let failed = |what: &str, error: &dyn std::fmt::Display| format!("{what}: {error}");
     write_vtu(d.mesh(), solution, bound, std::io::sink()).map_err(|error| failed("solution.vtu", &error))?;
@@ -92,7 +92,7 @@ fn files(d: &Discretization, bounded: &Bounded) -> Result<(), String> {
 }
 
 /// The pictures that cannot be drawn.
-pub fn pictures(hostile: &Hostile, d: &Discretization, bounded: &Bounded) -> Result<(), String> {
+pub fn pictures(hostile: &Hostile, d: &PairDiscretization, bounded: &Bounded) -> Result<(), String> {
     let solution = &bounded.solution;
     let failed = |what: &str, error: &dyn std::fmt::Display| format!("{what}: {error}");
     let picture = Picture::of(hostile.name, d.mesh(), solution);
@@ -120,7 +120,7 @@ fn encode(name: &str, drawing: Result<Drawing, String>) -> Result<(), String> {
     strange.map_or(Ok(()), |number| Err(format!("{name}: the SVG has {number}")))
 }
 
-fn fluxes(hostile: &Hostile, d: &Discretization, bounded: &Bounded) -> Result<(), String> {
+fn fluxes(hostile: &Hostile, d: &PairDiscretization, bounded: &Bounded) -> Result<(), String> {
     let solution = &bounded.solution;
     let sub = SubTriangulation::new(d.mesh()).map_err(|error| error.to_string())?;
     let load = |i: usize| {
@@ -145,7 +145,7 @@ fn fluxes(hostile: &Hostile, d: &Discretization, bounded: &Bounded) -> Result<()
 
 /// The exported program holds finite numbers only, the same in every format; the solution, read back as an answer to it,
 /// certifies.
-fn exported(d: &Discretization, bounded: &Bounded) -> Result<(), String> {
+fn exported(d: &PairDiscretization, bounded: &Bounded) -> Result<(), String> {
     let qp = contact_qp(d);
     write_npz(d, &qp, Cursor::new(Vec::new())).map_err(|error| format!("problem.npz: {error}"))?;
     let mut qps = Vec::new();
@@ -171,7 +171,7 @@ fn number(text: &str) -> f64 {
     text.trim().parse().expect("a number")
 }
 
-fn answered(d: &Discretization, qp: &QpProblem, bounded: &Bounded) -> Result<(), String> {
+fn answered(d: &PairDiscretization, qp: &QpProblem, bounded: &Bounded) -> Result<(), String> {
     let solution = &bounded.solution;
     let x: Vec<f64> =
         solution.displacement().iter().flat_map(|u| d.interior().iter().map(|&a| u[a])).collect();
@@ -180,7 +180,9 @@ fn answered(d: &Discretization, qp: &QpProblem, bounded: &Bounded) -> Result<(),
     let answer =
         read_answer(Cursor::new(archive), qp.q().len(), qp.b().len()).map_err(|error| error.to_string())?;
     let candidate = Candidate::from_answer(d, answer, solution.statistics().clone());
-    certify(d, candidate, bounded.tolerance).map(|_| ()).map_err(|rejected| format!("read back: {rejected}"))
+    certify_pair(d, candidate, bounded.tolerance)
+        .map(|_| ())
+        .map_err(|rejected| format!("read back: {rejected}"))
 }
 
 fn archive(arrays: &[(&str, &[f64])]) -> Vec<u8> {

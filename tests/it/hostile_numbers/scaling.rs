@@ -1,7 +1,7 @@
 //! Data scaled by powers of two: the solution is scaled, to the last bit.
 
-use membrane_contact::action::certify;
-use membrane_contact::discretization::Discretization;
+use membrane_contact::action::certify_pair;
+use membrane_contact::discretization::PairDiscretization;
 use membrane_contact::mesh::{Mesh, polygon};
 use membrane_contact::problem::{ContactProblem, Function};
 
@@ -47,9 +47,9 @@ impl Scaling {
 /// `[u1, u2, lambda]` over vertices by every solver.
 fn solutions(scaling: Scaling, of_size_one: &Mesh) -> Vec<(String, [Vec<f64>; 3])> {
     let mesh = scaling.mesh(of_size_one);
-    let d = Discretization::new(&scaling.problem(), mesh.clone()).expect("it can be computed with");
+    let d = PairDiscretization::new(&scaling.problem(), mesh.clone()).expect("it can be computed with");
     let solve = |mut solver: Box<dyn membrane_contact::solver::ContactSolver>| {
-        let solution = certify(&d, solve(&mut *solver, &d, true), TOLERANCE).expect("certified");
+        let solution = certify_pair(&d, solve(&mut *solver, &d, true), TOLERANCE).expect("certified");
         let [u1, u2] = solution.displacement().clone();
         (solver.name().to_owned(), [u1, u2, solution.lambda().to_vec()])
     };

@@ -1,6 +1,6 @@
 //! The bound of the error is not a lie: what a finer mesh finds is no farther away than the two bounds allow.
 
-use membrane_contact::discretization::Discretization;
+use membrane_contact::discretization::PairDiscretization;
 use membrane_contact::mesh::Refinement;
 use membrane_contact::solver::ActiveSet;
 
@@ -37,7 +37,7 @@ fn distance_and_bound(hostile: &Hostile, factor: f64) -> Result<[f64; 2], String
 }
 
 /// `v' K v`, with a change of each entry of `K`.
-fn energy(d: &Discretization, v: &[f64], entry: impl Fn(f64) -> f64) -> f64 {
+fn energy(d: &PairDiscretization, v: &[f64], entry: impl Fn(f64) -> f64) -> f64 {
     d.stiffness().iter().map(|(&k, (a, b))| entry(k) * v[a] * v[b]).sum()
 }
 

@@ -1,8 +1,8 @@
 //! What holds where `K` has no positive entry off its diagonal: the comparison principle, and the discrete bound of Lewy and
 //! Stampacchia for the action.
 
-use membrane_contact::action::ContactSolution;
-use membrane_contact::discretization::Discretization;
+use membrane_contact::action::PairSolution;
+use membrane_contact::discretization::PairDiscretization;
 use membrane_contact::mesh::Mesh;
 
 use super::random::{Draw, Formula};
@@ -55,7 +55,7 @@ fn is_monotone(draw: &Draw, Change { raise, signs }: &Change) -> Result<(), Stri
     let [before, after] = [solve(&d)?, solve(&d_raised)?];
     let length = EXACT.displacement * d.scales().displacement.max(d_raised.scales().displacement);
     let force = EXACT.action * d.scales().force_density.max(d_raised.scales().force_density);
-    let values = |solution: &ContactSolution| {
+    let values = |solution: &PairSolution| {
         let [u1, u2] = solution.displacement().clone();
         [u1, u2, solution.gap(), solution.lambda().to_vec()]
     };
@@ -85,7 +85,7 @@ fn is_bounded(draw: &Draw, factor: f64) -> Result<(), String> {
     Ok(())
 }
 
-fn most(d: &Discretization, a: usize) -> f64 {
+fn most(d: &PairDiscretization, a: usize) -> f64 {
     let [mu1, mu2] = d.tension();
     let [f1, f2] = d.load();
     ((mu1 * f2[a] - mu2 * f1[a]) / ((mu1 + mu2) * d.dual_area()[a])).max(0.0)

@@ -6,7 +6,7 @@ use membrane_contact::problem::Function;
 use super::random::{Draw, Formula};
 use super::{EXACT, Fields, holds, is_seen, solve};
 use crate::invariance::random::MeshDraw;
-use membrane_contact::discretization::Discretization;
+use membrane_contact::discretization::PairDiscretization;
 
 /// `p -> origin + size Q p`, with a rotation `Q` or one after a reflection.
 #[derive(Clone, Copy)]
@@ -66,7 +66,7 @@ fn goes_with_the_domain(draw: &Draw, motion: Motion, factor: f64, mesh: &MeshDra
     let moved = Mesh::new(points, mesh.triangles().to_vec()).map_err(|error| error.to_string())?;
     let [f1, f2] = draw.load.map(|load| motion.carry(&load, factor));
     let problem = draw.problem_with([f1, f2], motion.carry(&draw.height, 1.0))?;
-    let d_moved = Discretization::new(&problem, moved.clone()).map_err(|error| error.to_string())?;
+    let d_moved = PairDiscretization::new(&problem, moved.clone()).map_err(|error| error.to_string())?;
     let mut found = Fields::from(&solve(&d_moved)?);
     found.lambda.iter_mut().for_each(|lambda| *lambda /= factor);
     expected.compare(&found, &d, EXACT)

@@ -1,6 +1,6 @@
 //! Vertices and triangles in another order: the same membranes.
 
-use membrane_contact::discretization::Discretization;
+use membrane_contact::discretization::PairDiscretization;
 use membrane_contact::mesh::Mesh;
 
 use super::random::Draw;
@@ -18,7 +18,7 @@ fn survives(draw: &Draw, read: impl Fn(&[usize], usize) -> usize) -> Result<(), 
     let number = random.permutation(mesh.points().len());
     let renumbered = renumbered(&mesh, &number, &mut random)?;
     let d_renumbered =
-        Discretization::new(&draw.problem()?, renumbered.clone()).map_err(|error| error.to_string())?;
+        PairDiscretization::new(&draw.problem()?, renumbered.clone()).map_err(|error| error.to_string())?;
     let found = Fields::from(&solve(&d_renumbered)?);
     let at = |a: usize| read(&number, a);
     let vertices = || 0..number.len();

@@ -1,6 +1,6 @@
 //! Problems drawn at random.
 
-use membrane_contact::discretization::Discretization;
+use membrane_contact::discretization::PairDiscretization;
 use membrane_contact::mesh::{Mesh, Pattern, VertexKind, disk, l_shape, polygon, rectangle};
 use membrane_contact::problem::{ContactProblem, Expression, Function};
 use proptest::prelude::*;
@@ -124,8 +124,8 @@ impl Draw {
         problem.map_err(|error| error.to_string())
     }
 
-    pub fn discretize(&self, mesh: &Mesh) -> Result<Discretization, String> {
-        Discretization::new(&self.problem()?, mesh.clone()).map_err(|error| error.to_string())
+    pub fn discretize(&self, mesh: &Mesh) -> Result<PairDiscretization, String> {
+        PairDiscretization::new(&self.problem()?, mesh.clone()).map_err(|error| error.to_string())
     }
 }
 

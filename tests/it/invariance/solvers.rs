@@ -1,7 +1,7 @@
 //! Every solver finds the same.
 
-use membrane_contact::action::ContactSolution;
-use membrane_contact::discretization::Discretization;
+use membrane_contact::action::PairSolution;
+use membrane_contact::discretization::PairDiscretization;
 use membrane_contact::solver::ContactSolver;
 
 use super::random::Draw;
@@ -13,7 +13,7 @@ use crate::common::solvers;
 const NEAR: Nearness = Nearness { displacement: 1e-7, action: 1e-6 };
 
 /// The certificate is one of forces: what they may be wrong by moves the softer membrane more than it would move the other.
-fn nearness(d: &Discretization) -> Nearness {
+fn nearness(d: &PairDiscretization) -> Nearness {
     let scales = d.scales();
     let (lower, upper) = d.mesh().bounding_box();
     let width = (upper[0] - lower[0]).min(upper[1] - lower[1]);
@@ -26,7 +26,7 @@ fn agree(draw: &Draw, change: fn(&mut Fields)) -> Result<(), String> {
     let mesh = draw.mesh.build()?;
     let d = draw.discretize(&mesh)?;
     let solve = |mut solver: Box<dyn ContactSolver>| solve_by(&mut *solver, &d);
-    let solutions: Vec<ContactSolution> = solvers().into_iter().map(solve).collect::<Result<_, _>>()?;
+    let solutions: Vec<PairSolution> = solvers().into_iter().map(solve).collect::<Result<_, _>>()?;
     let expected = Fields::from(&solutions[0]);
     for solution in &solutions[1..] {
         let mut found = Fields::from(solution);

@@ -1,7 +1,7 @@
 //! The membranes exchanged and turned upside down: `u1' = g - u2`, `u2' = g - u1` for the loads `-f2`, `-f1`, the tensions
 //! `mu2`, `mu1` and a height that is affine on the whole domain. The action is the same.
 
-use membrane_contact::discretization::Discretization;
+use membrane_contact::discretization::PairDiscretization;
 
 use super::random::{Draw, Formula};
 use super::{EXACT, Fields, holds, is_seen, solve};
@@ -26,7 +26,7 @@ fn exchanges(draw: &Draw, sign: f64) -> Result<(), String> {
     let [mu1, mu2] = draw.tension;
     let exchanged = Draw { tension: [mu2, mu1], load: [f2.times(sign), f1.times(sign)], ..draw };
     let d_exchanged =
-        Discretization::new(&exchanged.problem()?, mesh.clone()).map_err(|error| error.to_string())?;
+        PairDiscretization::new(&exchanged.problem()?, mesh.clone()).map_err(|error| error.to_string())?;
     let found = Fields::from(&solve(&d_exchanged)?);
     let below_height =
         |u: &[f64]| mesh.points().iter().zip(u).map(|(&[x, y], u)| height.at(x, y) - u).collect();

@@ -1,7 +1,7 @@
 //! The computable side of the identity is the combined primal, dual and contact error.
 
 use super::{bound, cut_rule};
-use crate::discretization::{Discretization, Displacement};
+use crate::discretization::{Displacement, PairDiscretization};
 use crate::estimate::tests::{exact, mesh, problem, solve};
 use crate::fem::{element_loads, gradient};
 use crate::flux::{Flux, Reconstruction, Reconstructor};
@@ -29,7 +29,7 @@ impl Identity {
     fn new(exact: &ExactSolution, cells: usize) -> Self {
         let problem = problem(exact);
         let mesh = mesh(&exact.domain(), cells);
-        let d = Discretization::new(&problem, mesh.clone()).unwrap();
+        let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
         let solution = solve(&d);
         let parts = bound(&problem, &exact.domain(), &d, solution.displacement()).parts;
         let sub = SubTriangulation::new(&mesh).unwrap();
@@ -90,7 +90,7 @@ fn sums(
 }
 
 /// `<(sigma_1 + mu_1 grad u_1) . n, g - g_h>` over the boundary, by the rule of Simpson on eight parts of each half edge.
-fn on_boundary(exact: &ExactSolution, flux: &Flux, d: &Discretization) -> f64 {
+fn on_boundary(exact: &ExactSolution, flux: &Flux, d: &PairDiscretization) -> f64 {
     let (mesh, sub) = (d.mesh(), flux.sub_triangulation());
     let mut sum = 0.0;
     // The halves of the wedge of corner a: (a, midpoint, barycentre), whose third edge leads to the midpoint, and
@@ -121,7 +121,7 @@ fn on_boundary(exact: &ExactSolution, flux: &Flux, d: &Discretization) -> f64 {
 }
 
 /// `g_h` at a vertex or a midpoint of the boundary.
-fn height_h(d: &Discretization, mesh: &Mesh, sub: &SubTriangulation, t: usize, point: [f64; 2]) -> f64 {
+fn height_h(d: &PairDiscretization, mesh: &Mesh, sub: &SubTriangulation, t: usize, point: [f64; 2]) -> f64 {
     let k = sub.triangle_of(t);
     let heights = mesh.triangles()[k].map(|a| d.height()[a]);
     let slope = gradient(mesh.corners(k), heights);

@@ -1,8 +1,8 @@
 //! The bound is never below the true error.
 
 use super::{ErrorBound, bound};
-use crate::action::certify;
-use crate::discretization::{Discretization, Displacement};
+use crate::action::certify_pair;
+use crate::discretization::{Displacement, PairDiscretization};
 use crate::estimate::tests::{exact, mesh, problem, solve};
 use crate::estimate::{ErrorBounds, energy_error as measure};
 use crate::geometry::friedrichs;
@@ -20,13 +20,13 @@ const COARSE: f64 = 3.0;
 const ROUNDING: f64 = 1e-10;
 
 /// `|||u - u_h|||` of any displacements.
-fn energy_error(d: &Discretization, displacement: &Displacement, exact: &ExactSolution) -> f64 {
+fn energy_error(d: &PairDiscretization, displacement: &Displacement, exact: &ExactSolution) -> f64 {
     measure(d, displacement, exact).unwrap()
 }
 
 fn assert_bounds(name: &str, exact: &ExactSolution, mesh: &Mesh) {
     let problem = problem(exact);
-    let d = Discretization::new(&problem, mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
     let solution = solve(&d);
     let bound = bound(&problem, &exact.domain(), &d, solution.displacement());
     let error = energy_error(&d, solution.displacement(), exact);
@@ -62,7 +62,7 @@ fn on_a_disk_whose_height_varies() {
     let problem = ContactProblem::builder().tension(2.0, 1.0).height(height).build().unwrap();
     for rings in [4, 8, 16] {
         let mesh = disk([0.0, 0.0], 1.0, rings).unwrap();
-        let d = Discretization::new(&problem, mesh.clone()).unwrap();
+        let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
         let displacement = solve(&d).displacement().clone();
         let found = bound(&problem, &domain, &d, &displacement);
         let error = (2.0 * seminorm_of_difference_sq(&d, &displacement[0])).sqrt();
@@ -73,7 +73,7 @@ fn on_a_disk_whose_height_varies() {
 }
 
 /// `|x^2 - y^2 - u_h|_{H1}^2` over the mesh: the gradient `(2 x, -2 y)` less a constant, by the midpoints of the edges.
-fn seminorm_of_difference_sq(d: &Discretization, u: &[f64]) -> f64 {
+fn seminorm_of_difference_sq(d: &PairDiscretization, u: &[f64]) -> f64 {
     let mesh = d.mesh();
     let on_triangle = |k: usize| {
         let corners = mesh.corners(k);
@@ -119,7 +119,7 @@ fn on_random_polygons_against_a_finer_solution() {
         let mut random = Random::new(seed);
         let coarse = polygon(&random_polygon(&mut random), &[], 0.25, 20.0).unwrap();
         let problem = random_problem(&mut random);
-        let d = Discretization::new(&problem, coarse.clone()).unwrap();
+        let d = PairDiscretization::new(&problem, coarse.clone()).unwrap();
         let solution = solve(&d);
         let found = ErrorBound::new(&problem, None, &d, solution.displacement()).unwrap().total;
         let first = coarse.refine().unwrap();
@@ -131,7 +131,7 @@ fn on_random_polygons_against_a_finer_solution() {
                 u.extend(midpoints);
             }
         }
-        let d_fine = Discretization::new(&problem, second.mesh.clone()).unwrap();
+        let d_fine = PairDiscretization::new(&problem, second.mesh.clone()).unwrap();
         let finer = solve(&d_fine);
         for (u, finer) in difference.iter_mut().zip(finer.displacement()) {
             u.iter_mut().zip(finer).for_each(|(u, finer)| *u -= finer);
@@ -154,7 +154,7 @@ fn of_displacements_that_do_not_solve_the_problem() {
     let exact = exact(Case::Circle, &[("mu1", 1.0), ("mu2", 3.0)]);
     let problem = problem(&exact);
     let mesh = mesh(&exact.domain(), 24);
-    let d = Discretization::new(&problem, mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
     let loose = SolverOptions { tolerance: 1e-2, polish: false, ..SolverOptions::default() };
     let early = SolverOptions { max_iterations: Some(1), ..SolverOptions::default() };
     let solvers = || -> Vec<Box<dyn ContactSolver>> {
@@ -200,14 +200,14 @@ fn of_solutions_that_were_projected() {
     let exact = exact(Case::Circle, &[("mu1", 1.0), ("mu2", 3.0)]);
     let problem = problem(&exact);
     let mesh = mesh(&exact.domain(), 24);
-    let d = Discretization::new(&problem, mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
     let solvers: [Box<dyn ContactSolver>; 3] =
         [Box::new(ActiveSet), Box::new(Multigrid), Box::new(QpSolver::new(Clarabel))];
     let mut cut = 0;
     for mut solver in solvers {
         for tolerance in [1e-2, 1e-4, 1e-8] {
             let options = SolverOptions { tolerance, polish: false, ..SolverOptions::default() };
-            let solution = certify(&d, solver.solve(&d, &options).unwrap(), tolerance).unwrap();
+            let solution = certify_pair(&d, solver.solve(&d, &options).unwrap(), tolerance).unwrap();
             let found = ErrorBounds::new(&problem, None, &d).of_solution(&solution).unwrap();
             let error = energy_error(&d, solution.displacement(), &exact);
             let is = format!("{}, {tolerance:e}: {found:?}, error {error:e}", solver.name());
@@ -242,10 +242,10 @@ fn of_membranes_that_pass_through_each_other() {
     let [f1, f2] = exact.load_functions();
     let [mu1, mu2] = exact.tension();
     let apart = ContactProblem::builder().tension(mu1, mu2).load(f1, f2).height(HIGH).build().unwrap();
-    let [mut u1, u2] = solve(&Discretization::new(&apart, mesh.clone()).unwrap()).displacement().clone();
+    let [mut u1, u2] = solve(&PairDiscretization::new(&apart, mesh.clone()).unwrap()).displacement().clone();
     u1.iter_mut().for_each(|u1| *u1 -= HIGH);
     assert!(u1.iter().zip(&u2).any(|(u1, u2)| u1 < u2), "they overlap");
-    let d = Discretization::new(&problem, mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
     let displacement = [u1, u2];
     let found = bound(&problem, &exact.domain(), &d, &displacement);
     let error = energy_error(&d, &displacement, &exact);
@@ -261,7 +261,7 @@ fn on_a_disk_up_to_its_circle() {
     let problem = problem(&exact);
     for rings in [8, 32] {
         let mesh = mesh(&exact.domain(), rings);
-        let d = Discretization::new(&problem, mesh.clone()).unwrap();
+        let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
         let displacement = solve(&d).displacement().clone();
         let found = bound(&problem, &exact.domain(), &d, &displacement);
         let beyond_sq = beyond_the_polygon_sq(&exact, &mesh);

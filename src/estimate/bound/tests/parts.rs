@@ -4,7 +4,7 @@ use std::f64::consts::{PI, SQRT_2};
 
 use super::super::trace::Trace;
 use super::ErrorBound;
-use crate::discretization::Discretization;
+use crate::discretization::PairDiscretization;
 use crate::estimate::MeasureError;
 use crate::estimate::tests::{mesh, solve};
 use crate::fem::DEGREE_4;
@@ -21,7 +21,7 @@ fn with_load(f: Function) -> ContactProblem {
 }
 
 fn oscillation(problem: &ContactProblem, mesh: &Mesh) -> f64 {
-    let d = Discretization::new(problem, mesh.clone()).unwrap();
+    let d = PairDiscretization::new(problem, mesh.clone()).unwrap();
     ErrorBound::new(problem, None, &d, solve(&d).displacement()).unwrap().parts.oscillation
 }
 
@@ -78,7 +78,7 @@ fn the_constant_of_friedrichs_is_that_of_the_rectangle() {
 fn around_a_mesh_larger_than_the_disk_the_mesh_counts() {
     let domain = |radius: f64| Domain::Disk { centre: [0.0, 0.0], radius };
     let mesh = mesh(&domain(1.0), 8);
-    let d = Discretization::new(&with_load(1.0.into()), mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&with_load(1.0.into()), mesh.clone()).unwrap();
     // Not solved: the constant stands before what the solver left.
     let mut displacement = solve(&d).displacement().clone();
     displacement[0][d.interior()[5]] -= 1.0;
@@ -98,7 +98,7 @@ fn a_height_without_a_value_between_the_vertices_is_refused() {
     let with_height = |value: f64| {
         let g = move |x: f64, y: f64| if y == 0.0 && (0.3..0.7).contains(&x) { value } else { 0.1 };
         let problem = ContactProblem::builder().load(1.0, 0.0).height(Function::from_fn(g)).build().unwrap();
-        let d = Discretization::new(&problem, square(1)).unwrap();
+        let d = PairDiscretization::new(&problem, square(1)).unwrap();
         ErrorBound::new(&problem, None, &d, &[d.height().to_vec(), vec![0.0; 4]])
     };
     for value in [f64::NAN, f64::INFINITY] {
@@ -116,7 +116,7 @@ fn the_lift_has_the_seminorm_of_its_gradient() {
     let mesh = Mesh::new([&points[..3], &points[4..]].concat(), renumbered(&triangles)).unwrap();
     let g = |x: f64, y: f64| 1.0 + x * (1.0 - x) + y;
     let problem = ContactProblem::builder().height(Function::from_fn(g)).build().unwrap();
-    let d = Discretization::new(&problem, mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
     let lambda = vec![2.0; mesh.points().len()];
     let lift = Trace::new(&problem, None, &d).lift(0, &lambda).unwrap();
     // E at the part r of the ray from the apex (0.3, 0.8) to (t, 0): r = 1 - y / 0.8.
@@ -158,7 +158,7 @@ fn the_indicators_add_up_to_the_square_of_the_bound() {
         .build()
         .unwrap();
     let mesh = irregular(12);
-    let d = Discretization::new(&problem, mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
     let mut displacement = solve(&d).displacement().clone();
     let defect = |bound: &ErrorBound| bound.indicators.iter().sum::<f64>() / bound.total.powi(2) - 1.0;
     let solved = ErrorBound::new(&problem, None, &d, &displacement).unwrap();

@@ -10,7 +10,7 @@ const HEIGHT: f64 = 1e12;
 fn solved(load: f64, height: f64) -> ErrorBound {
     let problem = ContactProblem::builder().load(-load, load).height(height).build().unwrap();
     let mesh = square(8);
-    let d = Discretization::new(&problem, mesh.clone()).unwrap();
+    let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
     let candidate = ActiveSet.solve(&d, &SolverOptions::default()).unwrap();
     ErrorBound::new(&problem, None, &d, &candidate.displacement).unwrap()
 }

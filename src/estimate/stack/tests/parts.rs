@@ -19,7 +19,7 @@ fn of_the_pair_they_are_those_of_its_own_bound() {
     let mesh = irregular(10);
     let d = posed(&problem, &mesh);
     let solution = solve(&d);
-    let of_pair = crate::discretization::Discretization::new(&problem, mesh.clone()).unwrap();
+    let of_pair = crate::discretization::PairDiscretization::new(&problem, mesh.clone()).unwrap();
     let displacement: [Vec<f64>; 2] = solution.displacement().clone().try_into().unwrap();
     let expected = ErrorBound::new(&problem, None, &of_pair, &displacement).unwrap();
     let found = bound(&d, &solution);

@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 
 use super::{TOLERANCE, posed, solve_by, solvers};
-use crate::action::{GapSolution, StackSolution, certify};
-use crate::discretization::{Discretization, IntegrationRule, StackDiscretization};
+use crate::action::{GapSolution, StackSolution, certify_pair};
+use crate::discretization::{IntegrationRule, PairDiscretization, StackDiscretization};
 use crate::mesh::samples::irregular;
 use crate::mesh::{Mesh, Pattern, rectangle};
 use crate::numeric::largest;
@@ -274,8 +274,9 @@ fn one_membrane_over_a_floor_is_the_gap_of_a_pair() {
         0.1,
     )
     .unwrap();
-    let d = Discretization::new(&pair, mesh.clone()).unwrap();
-    let of_pair = certify(&d, ActiveSet.solve(&d, &SolverOptions::default()).unwrap(), TOLERANCE).unwrap();
+    let d = PairDiscretization::new(&pair, mesh.clone()).unwrap();
+    let of_pair =
+        certify_pair(&d, ActiveSet.solve(&d, &SolverOptions::default()).unwrap(), TOLERANCE).unwrap();
     // m = mu1 mu2 / (mu1 + mu2) = 1, and m w solves the problem of the load (f1 - f2) / 2 = f1.
     let sheet = Membrane::new(1.0).load(load()).height(0.1);
     let d = posed(&ContactProblem::obstacle(sheet, 0.0).unwrap(), &mesh);
@@ -298,8 +299,9 @@ fn a_floor_out_of_reach_leaves_the_pair_as_it_is() {
     let mesh = irregular(12);
     let load = Function::from_fn(|x, y| -30.0 * x * (1.0 - y));
     let pair = ContactProblem::pair([1.0, 3.0], [load.clone(), 10.0.into()], 0.05).unwrap();
-    let d = Discretization::new(&pair, mesh.clone()).unwrap();
-    let of_pair = certify(&d, ActiveSet.solve(&d, &SolverOptions::default()).unwrap(), TOLERANCE).unwrap();
+    let d = PairDiscretization::new(&pair, mesh.clone()).unwrap();
+    let of_pair =
+        certify_pair(&d, ActiveSet.solve(&d, &SolverOptions::default()).unwrap(), TOLERANCE).unwrap();
     let membranes = [Membrane::new(1.0).load(load).height(0.05), Membrane::new(3.0).load(10.0)];
     let [upper, lower] = membranes;
     let problem = ContactProblem::stack().membrane(upper).membrane(lower).floor(-100.0).build().unwrap();
