@@ -15,19 +15,19 @@ use std::sync::Arc;
 
 use sprs::CsMat;
 
-use super::{Scales, dual_areas};
+use super::areas::dual_areas;
+use super::scales::Scales;
 use crate::fem::weighted_stiffness;
 use crate::mesh::{Mesh, VertexTriangles};
 use crate::problem::{ContactProblem, Field};
 
 pub(crate) use chain::Segment;
 use chain::{Layer, segments};
-pub(crate) use data::Samples;
 pub use error::StackError;
 pub use fields::IntegrationRule;
-pub(crate) use fields::at_samples;
 use fields::{POSITIVE, borders, means};
-use membrane::{MembraneData, connected_parts};
+pub(crate) use fields::{Samples, at_samples};
+use membrane::{MembraneData, connected_parts, profile};
 use obstacles::{check_order, obstacle};
 
 /// Displacements over vertices, one for each membrane from the top.
@@ -180,6 +180,11 @@ impl StackDiscretization {
     /// Whether there is a ceiling, and a floor.
     pub fn has_obstacles(&self) -> [bool; 2] {
         [0, 1].map(|k| self.obstacles[k].is_some())
+    }
+
+    /// Whether it is one membrane with at most one obstacle.
+    pub fn is_obstacle_problem(&self) -> bool {
+        self.membranes() == 1 && self.has_obstacles() != [true; 2]
     }
 
     /// The heights of ceiling and floor over vertices.
@@ -394,16 +399,4 @@ impl StackDiscretization {
         };
         Some(GapRow { gap, vertex: a, upper, lower, bound })
     }
-}
-
-/// A tension as a number times one of the profiles: membranes whose tensions are in proportion share one.
-fn profile(profiles: &mut Vec<Vec<f64>>, tension: &[f64]) -> (f64, usize) {
-    let factor = tension.first().copied().unwrap_or(1.0);
-    let is_that = |profile: &Vec<f64>| profile.iter().zip(tension).all(|(part, mu)| part * factor == *mu);
-    let known = profiles.iter().position(is_that).unwrap_or_else(|| {
-        let uniform = tension.iter().all(|mu| *mu == factor);
-        profiles.push(tension.iter().map(|mu| if uniform { 1.0 } else { mu / factor }).collect());
-        profiles.len() - 1
-    });
-    (factor, known)
 }

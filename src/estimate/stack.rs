@@ -18,51 +18,20 @@
 //! these points: obstacles, and the inverse of a tension. The domain is the polygon that the mesh covers, and heights are those of the
 //! vertices, affine between them.
 
+mod actions;
 mod cells;
+mod error;
 mod rest;
 #[cfg(test)]
 mod tests;
 
-use thiserror::Error;
-
 use super::{BoundParts, ErrorBound, LoadWarning};
-use crate::action::{StackSolution, extend_to_held};
-use crate::discretization::{IntegrationRule, StackDiscretization, StackError};
-use crate::mesh::{VertexKind, VertexTriangles};
+use crate::action::StackSolution;
+use crate::discretization::{IntegrationRule, StackDiscretization};
+use crate::mesh::VertexTriangles;
+use actions::Actions;
 use cells::{Cells, Sums};
-
-/// Why there is no bound of the error.
-#[derive(Debug, Clone, PartialEq, Error)]
-#[non_exhaustive]
-pub enum NoBound {
-    /// The values at vertices say nothing of what the data are between them.
-    #[error("the data are integrated by their values at vertices: use the quadrature")]
-    VertexRule,
-    /// The residual would have no mean of zero.
-    #[error(
-        "the foundation of membrane {membrane} varies inside triangles: give one value per region or triangle"
-    )]
-    VaryingFoundation {
-        /// From 1.
-        membrane: usize,
-    },
-    /// Parts of the domain that meet in a single vertex cannot be balanced one by one.
-    #[error(
-        "parts of the mesh meet in the single vertex {vertex}, around which membrane {membrane} has no flux: join or part them"
-    )]
-    MeetInAVertex {
-        /// The vertex.
-        vertex: usize,
-        /// From 1.
-        membrane: usize,
-    },
-    /// A datum has no value inside a triangle.
-    #[error(transparent)]
-    Data(#[from] StackError),
-    /// Solution and discretization do not belong together.
-    #[error("the solution belongs to another discretization: give the one that was solved")]
-    OtherMesh,
-}
+pub use error::NoBound;
 
 impl ErrorBound {
     /// Bounds the error of a certified solution of a stack, `(sum_i ||mu_i^(1/2) grad (u_i - u_ih)||^2 + ||c_i^(1/2) (u_i -
@@ -129,70 +98,5 @@ impl ErrorBound {
             quadrature_difference: d.quadrature_difference(),
             warnings: LoadWarning::of_stack(d, total),
         }
-    }
-}
-
-/// The actions of the bound: those of the solution, continued to where both layers are held, and parted into what acts on areas and
-/// what acts along lines.
-pub(super) struct Actions {
-    gaps: Vec<GapAction>,
-}
-
-struct GapAction {
-    number: usize,
-    /// `lt` on the dual cells, over vertices. Unit: force per area.
-    lambda: Vec<f64>,
-    /// The edges that carry an action along a line, the lower end of each first, and its densities on the halves at both ends.
-    lines: Vec<([usize; 2], [f64; 2])>,
-}
-
-impl Actions {
-    fn new(d: &StackDiscretization, solution: &StackSolution) -> Self {
-        let gaps = solution.gaps().iter().map(|gap| {
-            let (k, area) = (gap.number, d.dual_area());
-            let mut lambda = gap.lambda.clone();
-            let of_edge = |edge: [usize; 2]| (edge, edge.map(|a| gap.line_density[a]));
-            let touches = |edge: &[usize; 2]| edge.iter().all(|&a| gap.contact[a]);
-            let lines: Vec<_> = d
-                .lines(k)
-                .into_iter()
-                .filter(touches)
-                .map(of_edge)
-                .filter(|(_, density)| *density != [0.0; 2])
-                .collect();
-            for &(ends, density) in &lines {
-                let half = 0.5 * d.edge_length(ends);
-                for (a, density) in ends.into_iter().zip(density) {
-                    // Rounding of a difference may leave less than nothing.
-                    lambda[a] = (lambda[a] - density * half / area[a]).max(0.0);
-                }
-            }
-            let is_held = |a: usize| d.mesh().kind()[a] != VertexKind::Unused && d.row(k, a).is_none();
-            extend_to_held(d.mesh(), is_held, |a| gap.gap[a] > 0.0, &mut lambda);
-            GapAction { number: k, lambda, lines }
-        });
-        Self { gaps: gaps.collect() }
-    }
-
-    fn gap(&self, k: usize) -> Option<&GapAction> {
-        self.gaps.iter().find(|gap| gap.number == k)
-    }
-
-    /// `lt_i - lt_(i-1)` over vertices.
-    fn on_membrane(&self, i: usize, vertices: usize) -> Vec<f64> {
-        let mut action = vec![0.0; vertices];
-        for (k, sign) in [(i, 1.0), (i - 1, -1.0)] {
-            let lambda = self.gap(k).map_or(&[][..], |gap| &gap.lambda);
-            action.iter_mut().zip(lambda).for_each(|(action, lambda)| *action += sign * lambda);
-        }
-        action
-    }
-
-    /// All edges that carry an action along a line on membrane `i`, with the sign of what it does to the membrane.
-    fn lines_on(&self, i: usize) -> impl Iterator<Item = ([usize; 2], [f64; 2])> {
-        [(i, 1.0), (i - 1, -1.0)].into_iter().flat_map(move |(k, sign)| {
-            let lines = self.gap(k).map_or(&[][..], |gap| &gap.lines);
-            lines.iter().map(move |&(ends, density)| (ends, density.map(|density| sign * density)))
-        })
     }
 }

@@ -2,15 +2,12 @@
 
 use super::StackDiscretization;
 use super::error::StackError;
-use super::fields::{IntegrationRule, at_samples, samples};
+use super::fields::{IntegrationRule, Samples, at_samples, samples};
 use super::membrane::MembraneData;
 use super::supports::Held;
 use crate::fem::LoadMoments;
 use crate::geometry::distance_sq;
 use crate::problem::{ContactProblem, Field};
-
-/// A field at seven points of a triangle: the corners, the midpoints of the edges from each corner to the next, the barycentre.
-pub(crate) type Samples = [f64; 7];
 
 impl StackDiscretization {
     /// The problem.

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::discretization::LARGEST;
+use crate::discretization::scales::LARGEST;
 use crate::problem::EvaluationError;
 use crate::text::{Number, excerpt};
 

@@ -227,6 +227,9 @@ pub(super) fn means(
     Ok(means)
 }
 
+/// A field at seven points of a triangle: the corners, the midpoints of the edges from each corner to the next, the barycentre.
+pub(crate) type Samples = [f64; 7];
+
 /// Where data are sampled on a triangle to bound errors: the corners, the midpoints of the edges from each corner to the next, the
 /// barycentre. Barycentric coordinates.
 const SAMPLES: [[f64; 3]; 7] = [
@@ -240,13 +243,13 @@ const SAMPLES: [[f64; 3]; 7] = [
 ];
 
 /// An affine function at the points, from its values at the corners.
-pub(crate) fn at_samples(corners: [f64; 3]) -> [f64; 7] {
+pub(crate) fn at_samples(corners: [f64; 3]) -> Samples {
     SAMPLES.map(|point| (0..3).map(|j| point[j] * corners[j]).sum::<f64>())
 }
 
 /// A field at the corners of each triangle, the midpoints of its edges (from each corner to the next) and its barycentre, as the
 /// triangle itself sees it. Shape: `triangles x 7`.
-pub(super) fn samples(mesh: &Mesh, field: &Field, datum: &str) -> Result<Vec<[f64; 7]>, StackError> {
+pub(super) fn samples(mesh: &Mesh, field: &Field, datum: &str) -> Result<Vec<Samples>, StackError> {
     let mut samples = vec![[0.0; 7]; mesh.triangles().len()];
     for Piece { field, triangles } in pieces(mesh, field, datum)? {
         let of_triangle = |t: usize| match field {

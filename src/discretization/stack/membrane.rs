@@ -108,3 +108,15 @@ pub(super) fn connected_parts(mesh: &Mesh) -> Vec<usize> {
     }
     (0..parent.len()).map(|a| root(&mut parent, a)).collect()
 }
+
+/// A tension as a number times one of the profiles: membranes whose tensions are in proportion share one.
+pub(super) fn profile(profiles: &mut Vec<Vec<f64>>, tension: &[f64]) -> (f64, usize) {
+    let factor = tension.first().copied().unwrap_or(1.0);
+    let is_that = |profile: &Vec<f64>| profile.iter().zip(tension).all(|(part, mu)| part * factor == *mu);
+    let known = profiles.iter().position(is_that).unwrap_or_else(|| {
+        let uniform = tension.iter().all(|mu| *mu == factor);
+        profiles.push(tension.iter().map(|mu| if uniform { 1.0 } else { mu / factor }).collect());
+        profiles.len() - 1
+    });
+    (factor, known)
+}

@@ -5,7 +5,7 @@ use std::collections::BinaryHeap;
 
 use super::error::StackError;
 use super::membrane::MembraneData;
-use crate::discretization::{LARGEST, Scales};
+use crate::discretization::scales::{LARGEST, Scales};
 use crate::geometry::distance_sq;
 use crate::mesh::{Mesh, VertexKind};
 use crate::numeric::largest;

@@ -2,7 +2,8 @@
 
 use std::collections::HashMap;
 
-use super::{Actions, GapAction, NoBound};
+use super::actions::{Actions, GapAction};
+use super::error::NoBound;
 use crate::discretization::{Samples, StackDiscretization, at_samples};
 use crate::fem::{DEGREE_4, ElementMoments, gradient};
 use crate::flux::{Balanced, MeetInAVertex, MembraneFlux, constant_outward, inner_product, value};

@@ -8,7 +8,7 @@ use super::{bound, energy_error, integral, posed, solve};
 use crate::action::certify_stack;
 use crate::discretization::Displacements;
 use crate::estimate::ErrorBound;
-use crate::estimate::stack::Actions;
+use crate::estimate::stack::actions::Actions;
 use crate::fem::gradient;
 use crate::mesh::samples::with_sides_and_patch;
 use crate::mesh::{Mesh, Pattern, rectangle};
