@@ -30,7 +30,7 @@ fn solve(criterion: &mut Criterion) {
         for mut solver in solvers() {
             let id = BenchmarkId::new(solver.name(), cells);
             group.bench_function(id, |bencher| {
-                bencher.iter(|| solver.solve(&d, &SolverOptions::default()).expect("it runs"));
+                bencher.iter(|| solver.solve_pair(&d, &SolverOptions::default()).expect("it runs"));
             });
         }
     }

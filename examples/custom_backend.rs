@@ -113,7 +113,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let d = PairDiscretization::new(&problem, mesh)?;
     let options = SolverOptions { polish: false, ..SolverOptions::default() };
 
-    let candidate = QpSolver::new(MethodOfMultipliers { penalty: 100.0 }).solve(&d, &options)?;
+    let candidate = QpSolver::new(MethodOfMultipliers { penalty: 100.0 }).solve_pair(&d, &options)?;
     let solution = certify_pair(&d, candidate, options.tolerance)?;
     println!(
         "{}: {} outer iterations, energy {:.9}, contact area {:.4}",

@@ -1,6 +1,7 @@
 //! The action `lambda_h` of section 4.1, and the certificate that ties it to the displacements.
 
 mod certificate;
+mod contact_solution;
 mod extension;
 mod pairing;
 mod projection;
@@ -12,6 +13,7 @@ mod stack;
 mod tests;
 
 pub use certificate::{Reason, Rejected, certify_pair};
+pub use contact_solution::{ContactSolution, Gap, certify};
 pub(crate) use extension::{extend_to_boundary, extend_to_held};
 pub use pairing::{equilibrium, is_in_cone, pairing, project, variation};
 pub use projection::CutOff;

@@ -1,6 +1,7 @@
 //! Errors of solutions: bounds, guaranteed up to the quadrature of the loads, and norms against an exact solution.
 
 mod bound;
+mod contact_bounds;
 mod lift;
 mod norms;
 mod residual;
@@ -10,6 +11,7 @@ mod stack;
 mod tests;
 
 pub use bound::{BoundParts, ErrorBound, ErrorBounds, LoadWarning};
+pub use contact_bounds::ContactBounds;
 pub use lift::DualNorm;
 pub use norms::{ContactAreas, ErrorNorms, energy_error};
 pub use residual::residual_indicators;

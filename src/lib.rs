@@ -35,14 +35,12 @@ pub use sprs;
 
 /// What most programs need: `use membrane_contact::prelude::*`.
 pub mod prelude {
-    pub use crate::action::{PairSolution, StackSolution, certify_pair, certify_stack};
-    pub use crate::discretization::{PairDiscretization, StackDiscretization};
+    pub use crate::action::{ContactSolution, PairSolution, StackSolution, certify};
+    pub use crate::discretization::{Discretization, PairDiscretization, StackDiscretization};
     pub use crate::estimate::ErrorBound;
     pub use crate::mesh::{Mesh, MeshSize, Pattern, disk, generate, l_shape, polygon, rectangle};
     pub use crate::problem::{ContactProblem, Domain, Expression, Field, Function, Membrane};
-    pub use crate::solver::{
-        ActiveSet, Auto, ContactSolver, Multigrid, QpSolver, SolverOptions, StackSolver,
-    };
+    pub use crate::solver::{ActiveSet, Auto, ContactSolver, Multigrid, QpSolver, SolverOptions};
     pub use crate::study::{Solved, solve};
 }
 

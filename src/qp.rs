@@ -32,7 +32,7 @@ pub use self::clarabel::Clarabel;
 pub use self::osqp::Osqp;
 pub use answer::Answer;
 pub use backend::{BackendError, QpBackend, QpOptions, QpSolution};
-pub use contact::{contact_qp, stack_qp};
+pub use contact::{contact_qp, qp_of, stack_qp};
 #[cfg(feature = "files")]
 pub use export::{QpPart, write_matrix_market, write_npz, write_qps, write_stack_npz};
 #[cfg(feature = "files")]

@@ -1,15 +1,15 @@
-//! Solvers of the reduced discrete problem (3.4).
+//! Solvers of the discrete problem: of the paper's pair (3.4), and of any other stack.
 
 mod active_set;
 mod auto;
 mod candidate;
 mod contact_solver;
-mod decoupled;
 mod error;
 mod multigrid;
 mod options;
-mod polish;
+mod pair;
 mod qp_solver;
+mod repair;
 mod stack;
 mod statistics;
 
@@ -21,5 +21,4 @@ pub use error::SolverError;
 pub use multigrid::Multigrid;
 pub use options::SolverOptions;
 pub use qp_solver::QpSolver;
-pub use stack::{StackCandidate, StackSolver};
 pub use statistics::{PolishReport, Stalled, Statistics};

@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use super::projection::Projection;
 use super::{Action, PairSolution, Residuals};
-use crate::discretization::PairDiscretization;
+use crate::discretization::{Displacement, PairDiscretization};
 use crate::qp::Status;
 use crate::solver::{Candidate, Statistics};
 
@@ -24,11 +24,11 @@ pub fn certify_pair(
     tolerance: f64,
 ) -> Result<PairSolution, Box<Rejected>> {
     let Candidate { displacement, multiplier, statistics } = candidate;
-    let lengths_fit = displacement.iter().all(|u| u.len() == d.mesh().points().len())
-        && multiplier.len() == d.interior().len();
-    if !lengths_fit {
+    let fits = |u: &Displacement| u.iter().all(|u| u.len() == d.mesh().points().len());
+    let pair = Displacement::try_from(displacement).ok().filter(fits);
+    let Some(displacement) = pair.filter(|_| multiplier.len() == d.interior().len()) else {
         return Err(Box::new(Rejected { reason: Reason::Lengths, residuals: None, statistics }));
-    }
+    };
     let action = Action::recover(d, &displacement);
     let residuals = Residuals::new(d, &displacement, &multiplier, &action);
     if let Some(reason) = Reason::of(&residuals, tolerance) {

@@ -68,7 +68,7 @@ mod tests {
 
     /// `[u1, u2]` over vertices and `lambda` over unknowns.
     fn solve(d: &PairDiscretization) -> (Displacement, Vec<f64>) {
-        let candidate = ActiveSet.solve(d, &SolverOptions::default()).unwrap();
+        let candidate = ActiveSet.solve_pair(d, &SolverOptions::default()).unwrap();
         let solution = certify_pair(d, candidate, 1e-8).unwrap();
         let lambda = d.interior().iter().map(|&a| solution.lambda()[a]).collect();
         (solution.displacement().clone(), lambda)

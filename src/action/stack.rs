@@ -10,7 +10,7 @@ pub use solution::{GapSolution, StackSolution};
 
 use super::certificate::{Reason, Rejected};
 use crate::discretization::StackDiscretization;
-use crate::solver::StackCandidate;
+use crate::solver::Candidate;
 use projection::Projection;
 
 /// Checks a candidate against `K_i`, `F_i`, heights and obstacles and hands it out as a solution when every residual, beyond
@@ -24,10 +24,10 @@ use projection::Projection;
 /// As [`certify_pair`](super::certify_pair).
 pub fn certify_stack(
     d: &StackDiscretization,
-    candidate: StackCandidate,
+    candidate: Candidate,
     tolerance: f64,
 ) -> Result<StackSolution, Box<Rejected>> {
-    let StackCandidate { displacement, multiplier, statistics } = candidate;
+    let Candidate { displacement, multiplier, statistics } = candidate;
     let lengths_fit = displacement.len() == d.membranes()
         && displacement.iter().all(|u| u.len() == d.mesh().points().len())
         && multiplier.len() == d.rows().len();

@@ -1,7 +1,7 @@
 //! Every check of the certificate sees what it checks broken.
 
 use super::{Action, Reason, Residual, Residuals, certify_pair};
-use crate::discretization::PairDiscretization;
+use crate::discretization::{Displacement, PairDiscretization};
 use crate::mesh::samples::irregular;
 use crate::mesh::{Mesh, Pattern, VertexKind, rectangle};
 use crate::numeric::largest;
@@ -31,7 +31,7 @@ fn mesh() -> Mesh {
 
 fn solve(d: &PairDiscretization, polish: bool, max_iterations: Option<usize>) -> Candidate {
     let options = SolverOptions { tolerance: TOLERANCE, polish, max_iterations, ..SolverOptions::default() };
-    QpSolver::new(Clarabel).solve(d, &options).expect("Clarabel runs")
+    QpSolver::new(Clarabel).solve_pair(d, &options).expect("Clarabel runs")
 }
 
 /// Asserts that the candidate is rejected, and that the checks named are among those that see why.
@@ -143,7 +143,7 @@ fn displacements_of_one_membrane_alone_are_seen_by_the_mismatch_of_the_actions()
 fn the_action_depends_on_the_gap_alone() {
     let mesh = mesh();
     let d = PairDiscretization::new(&problem(0.0), mesh.clone()).unwrap();
-    let [mut u1, mut u2] = solve(&d, true, None).displacement;
+    let [mut u1, mut u2] = Displacement::try_from(solve(&d, true, None).displacement).unwrap();
     let before = Action::recover(&d, &[u1.clone(), u2.clone()]);
     for &a in d.interior() {
         let [x, y] = mesh.points()[a];
@@ -240,7 +240,8 @@ fn the_optimum_of_the_program_is_the_energy() {
     let options = QpOptions { tolerance: 1e-12, ..QpOptions::default() };
     let optimum = QpBackend::solve(&mut Clarabel, &qp.nondimensional(), &options).unwrap();
     let x: Vec<f64> = optimum.x.iter().map(|z| qp.primal_scale() * z).collect();
-    let solution = certify_pair(&d, ActiveSet.solve(&d, &SolverOptions::default()).unwrap(), 1e-8).unwrap();
+    let solution =
+        certify_pair(&d, ActiveSet.solve_pair(&d, &SolverOptions::default()).unwrap(), 1e-8).unwrap();
     let defect = |value: f64| (value / solution.energy() - 1.0).abs();
     // The energy is stationary at the optimum: its error is the square of the solver's.
     assert!(defect(qp.objective(&x)) < 1e-9, "{:e}", defect(qp.objective(&x)));

@@ -36,7 +36,7 @@ pub(super) fn problem(exact: &ExactSolution) -> ContactProblem {
 }
 
 pub(super) fn solve(d: &PairDiscretization) -> PairSolution {
-    certify_pair(d, ActiveSet.solve(d, &SolverOptions::default()).unwrap(), 1e-8).unwrap()
+    certify_pair(d, ActiveSet.solve_pair(d, &SolverOptions::default()).unwrap(), 1e-8).unwrap()
 }
 
 fn measure(exact: &ExactSolution, mesh: &Mesh) -> ErrorNorms {

@@ -78,14 +78,12 @@ pub(crate) fn inside(mesh: &Mesh) -> Vec<bool> {
 impl Hierarchy {
     /// Makes the levels of a discretization.
     pub(crate) fn new(d: &PairDiscretization) -> Self {
-        Self::over(d.stiffness(), &inside(d.mesh()), &Genealogy::of(d.mesh()))
+        Self::of_pair(d, &Genealogy::of(d.mesh()))
     }
 
-    /// Likewise, but all levels are algebraic: on stretched triangles coarser meshes are no good, because they are coarser also
-    /// along the long sides, where neighbours are hardly coupled.
-    pub(crate) fn algebraic(d: &PairDiscretization) -> Self {
-        let vertices = d.mesh().points().len();
-        Self::over(d.stiffness(), &inside(d.mesh()), &Genealogy::unknown(vertices))
+    /// Likewise with another genealogy.
+    pub(crate) fn of_pair(d: &PairDiscretization, genealogy: &Genealogy) -> Self {
+        Self::over(d.stiffness(), &inside(d.mesh()), genealogy)
     }
 
     /// Makes the levels of a stiffness matrix over the vertices of a mesh with this genealogy; those with an unknown are `free`.

@@ -18,19 +18,22 @@ fn unknown() -> Statistics {
 }
 
 /// Writes a checkpoint. Arrays: `marked`, the marked triangles of all refinements one after the other, `marked_counts`, their
-/// numbers; `u1`, `u2`, `lambda` over the vertices of the last mesh; `tolerance`; `statistics`, the bytes of a JSON object.
+/// numbers; `u1`, `u2`, ... and `lambda_1`, `lambda_2`, ..., the displacements from the top and the actions in the gaps, over the vertices of
+/// the last mesh; `tolerance`; `statistics`, the bytes of a JSON object.
 ///
 /// # Errors
 /// When writing fails.
 pub fn write_checkpoint(checkpoint: &Checkpoint, out: impl Write + Seek) -> io::Result<()> {
-    let Checkpoint { marked, displacement: [u1, u2], lambda, tolerance, statistics } = checkpoint;
+    let Checkpoint { marked, displacement, actions, tolerance, statistics } = checkpoint;
     let counts: Vec<usize> = marked.iter().map(Vec::len).collect();
     let marked = marked.concat();
     let mut archive = NpzWriter::stored(out);
     archive.integers("marked_counts", &counts, &[counts.len()])?;
     archive.integers("marked", &marked, &[marked.len()])?;
-    for (name, values) in [("u1", u1), ("u2", u2), ("lambda", lambda)] {
-        archive.floats(name, values, &[values.len()])?;
+    for (kind, fields) in [("u", displacement), ("lambda_", actions)] {
+        for (number, values) in (1..).zip(fields) {
+            archive.floats(&format!("{kind}{number}"), values, &[values.len()])?;
+        }
     }
     archive.floats("tolerance", &[*tolerance], &[1])?;
     archive.bytes("statistics", &serde_json::to_vec(statistics)?)?;
@@ -57,8 +60,12 @@ pub fn read_checkpoint(input: impl Read + Seek) -> io::Result<Checkpoint> {
     };
     let marked: Option<Vec<Vec<usize>>> = counts.iter().map(&mut split).collect();
     let marked = marked.ok_or_else(|| io::Error::other("fewer marked triangles than counted"))?;
-    let displacement = [read_vector(&mut archive, "u1")?, read_vector(&mut archive, "u2")?];
-    let lambda = read_vector(&mut archive, "lambda")?;
+    let mut fields = |kind: &str| -> io::Result<Vec<Vec<f64>>> {
+        let names = (1..).map(|number| format!("{kind}{number}"));
+        let there = names.take_while(|name| archive.index_for_name(&format!("{name}.npy")).is_some());
+        there.collect::<Vec<_>>().iter().map(|name| read_vector(&mut archive, name)).collect()
+    };
+    let (displacement, actions) = (fields("u")?, fields("lambda_")?);
     let tolerance: Vec<f64> = read_vector(&mut archive, "tolerance")?;
     let &[tolerance] = tolerance.as_slice() else {
         return Err(io::Error::other("`tolerance` is not one number"));
@@ -67,7 +74,7 @@ pub fn read_checkpoint(input: impl Read + Seek) -> io::Result<Checkpoint> {
     let statistics = read_vector::<u8>(&mut archive, "statistics");
     let statistics = statistics.ok().and_then(|text| serde_json::from_slice(&text).ok());
     let statistics = statistics.unwrap_or_else(unknown);
-    Ok(Checkpoint { marked, displacement, lambda, tolerance, statistics })
+    Ok(Checkpoint { marked, displacement, actions, tolerance, statistics })
 }
 
 #[cfg(test)]
@@ -79,8 +86,8 @@ mod tests {
     fn checkpoint() -> Checkpoint {
         Checkpoint {
             marked: vec![vec![3, 1], vec![], vec![7]],
-            displacement: [vec![0.1, -2.0], vec![f64::MIN_POSITIVE, 1.0 / 3.0]],
-            lambda: vec![0.0, 1e300],
+            displacement: vec![vec![0.1, -2.0], vec![f64::MIN_POSITIVE, 1.0 / 3.0]],
+            actions: vec![vec![0.0, 1e300]],
             tolerance: 1e-8,
             statistics: Statistics {
                 iterations: 7,

@@ -53,7 +53,7 @@ mod tests {
         let problem =
             ContactProblem::builder().tension(1.0, 3.0).load(-15.0, 10.0).height(0.1).build().unwrap();
         let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
-        let candidate = ActiveSet.solve(&d, &SolverOptions::default()).unwrap();
+        let candidate = ActiveSet.solve_pair(&d, &SolverOptions::default()).unwrap();
         let solution = certify_pair(&d, candidate, 1e-8).unwrap();
         let sub = SubTriangulation::new(&mesh).unwrap();
         let loads =

@@ -4,12 +4,13 @@ use std::io::{self, Write};
 
 use crate::action::StackSolution;
 use crate::discretization::StackDiscretization;
+use crate::estimate::ErrorBound;
 use crate::formats::vtk::{Cells, DataArray, Location, VTK_TRIANGLE, write_grid};
 use crate::mesh::Mesh;
 
 /// Writes `solution.vtu` of a stack: the mesh, with point data `u1` ... `uN`, `ceiling` and `floor` where they are; for each
 /// gap `gap`, `lambda`, `force` (the nodal forces), `line_density` and `contact`, with the number of the gap behind the name (`gap_1`) when
-/// there are several. With `groups`, each curve of the mesh as point data `curve NAME` and each region as cell data
+/// there are several. With a bound, cell data `error_indicator` as in [`write_vtu`](super::write_vtu); with `groups`, each curve of the mesh as point data `curve NAME` and each region as cell data
 /// `region NAME` (0 or 1). Binary, compressed by zlib; ParaView, PyVista and meshio read it.
 ///
 /// # Errors
@@ -17,6 +18,7 @@ use crate::mesh::Mesh;
 pub fn write_stack_vtu(
     d: &StackDiscretization,
     solution: &StackSolution,
+    bound: Option<&ErrorBound>,
     groups: bool,
     out: impl Write,
 ) -> io::Result<()> {
@@ -37,6 +39,9 @@ pub fn write_stack_vtu(
         points.push(DataArray::flags(named("contact"), gap.contact.iter().copied()));
     }
     let mut cells = Vec::new();
+    cells.extend(bound.map(|bound| {
+        DataArray::floats("error_indicator", bound.indicators.iter().map(|square| square.sqrt()))
+    }));
     if groups {
         points.extend(curves(mesh));
         cells.extend(regions(mesh));
@@ -73,7 +78,7 @@ mod tests {
     use crate::formats::vtk::samples::{floats, read_array};
     use crate::mesh::{Pattern, rectangle};
     use crate::problem::{ContactProblem, Membrane};
-    use crate::solver::{Auto, SolverOptions, StackSolver};
+    use crate::solver::{Auto, ContactSolver, SolverOptions};
 
     fn file(problem: &ContactProblem, groups: bool) -> (String, StackSolution) {
         let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [8; 2], Pattern::Right).unwrap();
@@ -82,7 +87,7 @@ mod tests {
         let candidate = Auto.solve_stack(&d, &SolverOptions::default()).unwrap();
         let solution = certify_stack(&d, candidate, 1e-8).unwrap();
         let mut file = Vec::new();
-        write_stack_vtu(&d, &solution, groups, &mut file).unwrap();
+        write_stack_vtu(&d, &solution, None, groups, &mut file).unwrap();
         (String::from_utf8(file).unwrap(), solution)
     }
 

@@ -4,15 +4,12 @@ use std::io::{self, Write};
 
 use serde::Serialize;
 
-use crate::action::{CutOff, GapSolution, PairSolution, Rejected, Residuals, StackSolution};
-use crate::discretization::{PairDiscretization, StackDiscretization};
-use crate::estimate::{BoundParts, ErrorBound};
+use crate::action::{ContactSolution, CutOff, GapSolution, PairSolution, Rejected, Residuals, StackSolution};
+use crate::discretization::Discretization;
+use crate::estimate::{BoundParts, ErrorBound, NoBound};
 use crate::formats::gmsh::PhysicalGroup;
 use crate::mesh::Mesh;
 use crate::solver::Statistics;
-
-/// Why there is no bound of the error of a stack.
-const NO_BOUND: &str = "no bound yet for other stacks than the pair: compare with a finer mesh";
 
 /// The contents of `summary.json`, field by field. Other programs read the names.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -81,7 +78,7 @@ pub struct Summary {
     pub error_bound: Option<f64>,
     /// Why there is no bound of a certified solution.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub no_error_bound: Option<&'static str>,
+    pub no_error_bound: Option<String>,
     /// The bound relative to the energy norm of the exact solution; absent also when it is too large to know that.
     pub relative_error_bound: Option<f64>,
     /// What the bound consists of; absent when not certified.
@@ -175,75 +172,84 @@ pub struct Seconds {
 }
 
 impl Summary {
-    /// The summary of a run, certified or not.
+    /// The summary of a run, certified or not; with a bound, or the reason why there is none.
     pub fn new(
         title: &str,
-        d: &PairDiscretization,
+        d: &Discretization,
         tolerance: f64,
-        result: Result<&PairSolution, &Rejected>,
+        result: Result<&ContactSolution, &Rejected>,
         seconds: Seconds,
-        bound: Option<&ErrorBound>,
+        bound: Option<Result<&ErrorBound, &NoBound>>,
     ) -> Self {
         let (statistics, residuals) = match result {
             Ok(solution) => (solution.statistics(), Some(solution.residuals())),
             Err(rejected) => (&rejected.statistics, rejected.residuals.as_ref()),
         };
-        let solution = result.ok();
-        Self {
-            certified: solution.is_some(),
-            unknowns: 2 * d.interior().len(),
-            energy: solution.map(PairSolution::energy),
-            contact_vertices: solution.map(|s| s.contact().iter().filter(|&&contact| contact).count()),
-            pressed_vertices: solution.map(|s| s.lambda().iter().filter(|&&lambda| lambda > 0.0).count()),
-            contact_area: solution.map(PairSolution::contact_area),
-            contact_area_extended: solution.map(PairSolution::contact_area_extended),
-            total_force: solution.map(PairSolution::total_force),
-            total_force_extended: solution.map(PairSolution::total_force_extended),
-            cut_off: solution.map(PairSolution::cut_off),
-            error_bound: bound.map(|bound| bound.total),
-            relative_error_bound: bound.and_then(ErrorBound::relative),
-            error_parts: bound.map(|bound| bound.parts),
-            quadrature_difference: bound.map(|bound| bound.quadrature_difference.clone()),
-            warnings: warnings(bound),
-            energy_norm: bound.map(|bound| bound.energy_norm),
-            ..Self::of_run(title, d.mesh(), tolerance, statistics, residuals, seconds)
+        let blank = Self::of_run(title, d.mesh(), tolerance, statistics, residuals, seconds);
+        let blank = Self { unknowns: d.unknowns(), ..blank };
+        let summary = match result {
+            Err(_) => blank,
+            Ok(solution) => Self {
+                certified: true,
+                energy: Some(solution.energy()),
+                cut_off: Some(solution.cut_off()),
+                ..match solution {
+                    ContactSolution::Pair(solution) => blank.of_pair(solution),
+                    ContactSolution::Stack(solution) => blank.of_stack(solution),
+                }
+            },
+        };
+        let summary = match d {
+            Discretization::Pair(_) => summary,
+            Discretization::Stack(d) => Self { membranes: Some(d.membranes()), ..summary },
+        };
+        match bound {
+            None => summary,
+            Some(Ok(bound)) => summary.with_bound(bound),
+            Some(Err(reason)) => Self { no_error_bound: Some(reason.to_string()), ..summary },
         }
     }
 
-    /// Likewise of a stack. Where it has exactly one gap, the names of the pair mean that gap.
-    pub fn of_stack(
-        title: &str,
-        d: &StackDiscretization,
-        tolerance: f64,
-        result: Result<&StackSolution, &Rejected>,
-        seconds: Seconds,
-    ) -> Self {
-        let (statistics, residuals) = match result {
-            Ok(solution) => (solution.statistics(), Some(solution.residuals())),
-            Err(rejected) => (&rejected.statistics, rejected.residuals.as_ref()),
-        };
-        let solution = result.ok();
-        let contacts =
-            solution.map(|solution| solution.gaps().iter().map(ContactSummary::from).collect::<Vec<_>>());
-        let only = match contacts.as_deref() {
-            Some([only]) => Some(only.clone()),
+    fn of_pair(self, solution: &PairSolution) -> Self {
+        Self {
+            contact_vertices: Some(solution.contact().iter().filter(|&&contact| contact).count()),
+            pressed_vertices: Some(solution.lambda().iter().filter(|&&lambda| lambda > 0.0).count()),
+            contact_area: Some(solution.contact_area()),
+            contact_area_extended: Some(solution.contact_area_extended()),
+            total_force: Some(solution.total_force()),
+            total_force_extended: Some(solution.total_force_extended()),
+            ..self
+        }
+    }
+
+    /// Where a stack has exactly one gap, the names of the pair mean that gap.
+    fn of_stack(self, solution: &StackSolution) -> Self {
+        let contacts: Vec<ContactSummary> = solution.gaps().iter().map(ContactSummary::from).collect();
+        let only = match contacts.as_slice() {
+            [only] => Some(only.clone()),
             _ => None,
         };
         Self {
-            certified: solution.is_some(),
-            membranes: Some(d.membranes()),
-            unknowns: d.unknowns(),
-            energy: solution.map(StackSolution::energy),
             contact_vertices: only.as_ref().map(|contact| contact.contact_vertices),
             pressed_vertices: only.as_ref().map(|contact| contact.pressed_vertices),
             contact_area: only.as_ref().map(|contact| contact.contact_area),
             total_force: only.as_ref().map(|contact| contact.total_force),
-            contacts,
-            reactions: solution.map(|solution| solution.reactions().to_vec()),
-            force_imbalance: solution.map(StackSolution::imbalance),
-            cut_off: solution.map(StackSolution::cut_off),
-            no_error_bound: solution.map(|_| NO_BOUND),
-            ..Self::of_run(title, d.mesh(), tolerance, statistics, residuals, seconds)
+            contacts: Some(contacts),
+            reactions: Some(solution.reactions().to_vec()),
+            force_imbalance: Some(solution.imbalance()),
+            ..self
+        }
+    }
+
+    fn with_bound(self, bound: &ErrorBound) -> Self {
+        Self {
+            error_bound: Some(bound.total),
+            relative_error_bound: bound.relative(),
+            error_parts: Some(bound.parts),
+            quadrature_difference: Some(bound.quadrature_difference.clone()),
+            warnings: bound.warnings.iter().map(ToString::to_string).collect(),
+            energy_norm: Some(bound.energy_norm),
+            ..self
         }
     }
 
@@ -316,10 +322,6 @@ impl Summary {
         serde_json::to_writer_pretty(&mut out, self)?;
         writeln!(out)
     }
-}
-
-fn warnings(bound: Option<&ErrorBound>) -> Vec<String> {
-    bound.iter().flat_map(|bound| &bound.warnings).map(ToString::to_string).collect()
 }
 
 fn polish(statistics: &Statistics) -> Option<PolishSummary> {

@@ -37,8 +37,9 @@ pub fn write_vtu(
 mod tests {
     use super::super::{Seconds, Summary};
     use super::*;
-    use crate::action::certify_pair;
-    use crate::discretization::PairDiscretization;
+    use crate::action::{ContactSolution, certify_pair};
+    use crate::discretization::Discretization;
+
     use crate::estimate::ErrorBounds;
     use crate::formats::vtk::samples::{floats, read_array};
     use crate::mesh::{Pattern, VertexKind, rectangle};
@@ -63,13 +64,16 @@ mod tests {
     fn the_files_the_summary_and_the_picture_have_one_contact_set() {
         let problem = ContactProblem::builder().load(-15.0, 10.0).height(0.2).build().unwrap();
         let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [48; 2], Pattern::Right).unwrap();
-        let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
+        let posed = Discretization::new(&problem, mesh.clone()).unwrap();
+        let d = posed.as_pair().unwrap();
         for mut solver in solvers() {
             for polish in [true, false] {
                 let options = SolverOptions { polish, ..SolverOptions::default() };
-                let solution = certify_pair(&d, solver.solve(&d, &options).unwrap(), 1e-8).unwrap();
-                let bound = ErrorBounds::new(&problem, None, &d).of_solution(&solution).unwrap();
-                let summary = Summary::new("", &d, 1e-8, Ok(&solution), Seconds::default(), Some(&bound));
+                let solution = certify_pair(d, solver.solve_pair(d, &options).unwrap(), 1e-8).unwrap();
+                let bound = ErrorBounds::new(&problem, None, d).of_solution(&solution).unwrap();
+                let of_pair = ContactSolution::Pair(solution.clone());
+                let (seconds, known) = (Seconds::default(), Some(Ok(&bound)));
+                let summary = Summary::new("", &posed, 1e-8, Ok(&of_pair), seconds, known);
                 let mut file = Vec::new();
                 write_vtu(&mesh, &solution, &bound, &mut file).unwrap();
                 let file = String::from_utf8(file).unwrap();

@@ -7,7 +7,15 @@ use sprs::{CsMat, TriMat};
 pub use stack::stack_qp;
 
 use super::QpProblem;
-use crate::discretization::PairDiscretization;
+use crate::discretization::{Discretization, PairDiscretization};
+
+/// The discrete problem as a quadratic program: [`contact_qp`] or [`stack_qp`].
+pub fn qp_of(d: &Discretization) -> QpProblem {
+    match d {
+        Discretization::Pair(d) => contact_qp(d),
+        Discretization::Stack(d) => stack_qp(d),
+    }
+}
 
 /// (3.4) in the unknowns `x = (u1, u2)` at the interior vertices, boundary values eliminated:
 ///

@@ -1,28 +1,10 @@
-//! The primal-dual active set method on the obstacle half (Hintermueller, Ito, Kunisch, SIAM J. Optim. 13 (2002) 865).
+//! The active set method.
 
-mod nested;
-mod obstacle;
-mod repair;
-#[cfg(test)]
-mod tests;
+use super::{Candidate, ContactSolver, SolverError, SolverOptions, pair, stack};
+use crate::discretization::{PairDiscretization, StackDiscretization};
 
-pub(super) use obstacle::{CAUTION, Obstacle, ROUNDING, SLIGHT, guess};
-pub(super) use repair::Repair;
-
-use web_time::Instant;
-
-use super::decoupled::Decoupled;
-use super::{Candidate, ContactSolver, SolverError, SolverOptions, Statistics};
-use crate::discretization::{Displacement, PairDiscretization};
-use crate::multigrid::cholesky::NotFactored;
-use crate::qp::{Limits, Status};
-
-/// The limit of steps when none is given. A cold start needs about as many as there are layers of vertices between the
-/// free boundary and where the first guess puts it.
-const MAX_STEPS: usize = 2000;
-
-/// The contact problem decoupled, and its contact set found by repair of a guess: that of the warm start, else that of the
-/// next coarser level, solved likewise.
+/// The contact set, found by repair of a guess: that of the warm start, else, for a pair, which is decoupled, that of the next
+/// coarser level, solved likewise. In a step on any other stack, all that touches moves as one.
 ///
 /// Works on any mesh. It ends with the exact contact set, so displacements and action are right to rounding. Every step
 /// factors a matrix anew, of a pattern that is analysed once for each level. A contact set that would come back is
@@ -35,70 +17,19 @@ impl ContactSolver for ActiveSet {
         "active-set"
     }
 
-    fn solve(&mut self, d: &PairDiscretization, options: &SolverOptions) -> Result<Candidate, SolverError> {
-        options.check()?;
-        let start = Instant::now();
-        let limits = options.limits(MAX_STEPS, start);
-        let (active, mut level_iterations) = match &options.warm_start {
-            Some(start) if start.fits(d) => (guess(d, &start.displacement, &start.multiplier), Vec::new()),
-            _ => nested::guess_from_coarser_levels(d, &limits)?,
-        };
-        let setup_seconds = start.elapsed().as_secs_f64();
-        let found = settle(d, active, &limits)?;
-        level_iterations.push(found.repairs + 1);
-        Ok(Candidate {
-            displacement: found.displacement,
-            multiplier: found.multiplier,
-            statistics: Statistics {
-                iterations: found.repairs + 1,
-                level_iterations,
-                setup_seconds,
-                solve_seconds: start.elapsed().as_secs_f64() - setup_seconds,
-                ..Statistics::of(self.name(), found.status)
-            },
-        })
+    fn solve_pair(
+        &mut self,
+        d: &PairDiscretization,
+        options: &SolverOptions,
+    ) -> Result<Candidate, SolverError> {
+        pair::active_set::solve(d, self.name(), options)
     }
-}
 
-/// Displacements over vertices and multipliers over unknowns for the last contact set.
-pub(super) struct Settled {
-    pub(super) displacement: Displacement,
-    pub(super) multiplier: Vec<f64>,
-    /// How often the contact set was repaired.
-    pub(super) repairs: usize,
-    /// Solved when the last contact set needed no repair.
-    pub(super) status: Status,
-}
-
-/// Solves for the contact set `active`, and repairs it until it is consistent.
-pub(super) fn settle(
-    d: &PairDiscretization,
-    active: Vec<bool>,
-    limits: &Limits,
-) -> Result<Settled, NotFactored> {
-    let decoupled = Decoupled::new(d);
-    let mut half = gap_half(d, &decoupled)?;
-    let sum_load = lifted(d, |a| decoupled.sum_load(a), |b| decoupled.sum_height(b));
-    let (gap, status, repairs) = half.settle(active, limits)?;
-    let s = half.without_obstacle(&sum_load)?;
-    let over_vertices = |unknowns: &[f64]| d.extend(unknowns, |_| 0.0);
-    let w: Vec<f64> = gap.w.iter().map(|w| w.max(0.0)).collect();
-    Ok(Settled {
-        displacement: decoupled.recombine(&over_vertices(&s), &over_vertices(&w)),
-        multiplier: gap.y.iter().map(|y| decoupled.gap_tension() * y.max(0.0)).collect(),
-        repairs,
-        status,
-    })
-}
-
-/// The obstacle half on the unknowns of the discretization.
-fn gap_half<'d>(d: &'d PairDiscretization, decoupled: &Decoupled) -> Result<Obstacle<'d>, NotFactored> {
-    let load = lifted(d, |a| decoupled.gap_load(a), |b| d.height()[b]);
-    let terms = d.interior().iter().map(|&a| decoupled.gap_load_terms(a)).collect();
-    Obstacle::new(d.interior_stiffness(), load, terms, d.scales().displacement)
-}
-
-/// `b - K_IB g` for a `height` that is zero inside.
-fn lifted(d: &PairDiscretization, load: impl Fn(usize) -> f64, height: impl Fn(usize) -> f64) -> Vec<f64> {
-    d.interior().iter().map(|&a| load(a) - d.stiffness_row(a, &height)).collect()
+    fn solve_stack(
+        &mut self,
+        d: &StackDiscretization,
+        options: &SolverOptions,
+    ) -> Result<Candidate, SolverError> {
+        stack::active_set::solve(d, self.name(), options)
+    }
 }

@@ -2,11 +2,11 @@
 
 use web_time::Instant;
 
-use super::multigrid::PreparedMultigrid;
+use super::multigrid::{PreparedMultigrid, Problem};
 use super::{
     ActiveSet, Candidate, ContactSolver, Multigrid, PreparedSolver, SolverError, SolverOptions, Stalled,
 };
-use crate::discretization::PairDiscretization;
+use crate::discretization::{Discretization, PairDiscretization, StackDiscretization};
 use crate::qp::Status;
 use crate::text::grouped;
 
@@ -18,7 +18,7 @@ const SMALL: usize = 2000;
 const SMALL_WITHOUT_HIERARCHY: usize = 5_000;
 
 /// How many unknowns of a membrane are few on a mesh with so many refinements, and these in words.
-pub(super) fn small(refinements: usize) -> (usize, String) {
+fn small(refinements: usize) -> (usize, String) {
     match refinements {
         0 => (SMALL_WITHOUT_HIERARCHY, "no coarser mesh known".into()),
         1 => (SMALL, "1 coarser mesh known".into()),
@@ -36,43 +36,69 @@ impl ContactSolver for Auto {
         "auto"
     }
 
-    fn solve(&mut self, d: &PairDiscretization, options: &SolverOptions) -> Result<Candidate, SolverError> {
-        PreparedAuto::new(d).solve(options)
+    fn solve_pair(
+        &mut self,
+        d: &PairDiscretization,
+        options: &SolverOptions,
+    ) -> Result<Candidate, SolverError> {
+        PreparedAuto::new(Problem::Pair(d)).solve(options)
     }
 
-    fn prepare<'s>(&'s mut self, d: &'s PairDiscretization) -> Box<dyn PreparedSolver + 's> {
-        Box::new(PreparedAuto::new(d))
+    fn solve_stack(
+        &mut self,
+        d: &StackDiscretization,
+        options: &SolverOptions,
+    ) -> Result<Candidate, SolverError> {
+        PreparedAuto::new(Problem::Stack(d)).solve(options)
+    }
+
+    fn prepare<'s>(&'s mut self, d: &'s Discretization) -> Box<dyn PreparedSolver + 's> {
+        Box::new(PreparedAuto::new(d.into()))
     }
 }
 
 /// The choice for one discretization. A multigrid that has stalled is not tried again.
 struct PreparedAuto<'d> {
-    d: &'d PairDiscretization,
+    problem: Problem<'d>,
     /// Or what has stalled.
     multigrid: Result<PreparedMultigrid<'d>, Vec<Stalled>>,
 }
 
 impl<'d> PreparedAuto<'d> {
-    fn new(d: &'d PairDiscretization) -> Self {
-        Self { d, multigrid: Ok(PreparedMultigrid::new(d)) }
+    fn new(problem: Problem<'d>) -> Self {
+        Self { problem, multigrid: Ok(PreparedMultigrid::new(problem)) }
     }
 }
 
 impl PreparedSolver for PreparedAuto<'_> {
     fn solve(&mut self, options: &SolverOptions) -> Result<Candidate, SolverError> {
-        let d = self.d;
-        let unknowns = d.interior().len();
-        let refinements = d.mesh().ancestry().len();
-        let (small, hierarchy) = small(refinements);
-        let (mut candidate, size) = if unknowns <= small {
-            (ActiveSet.solve(d, options)?, "few")
-        } else {
-            (self.multigrid_or_active_set(options)?, "many")
+        let (refinements, unknowns) = match self.problem {
+            Problem::Pair(d) => (d.mesh().ancestry().len(), d.interior().len()),
+            Problem::Stack(d) => (d.mesh().ancestry().len(), d.unknowns()),
         };
-        let stalled = if size == "many" && self.multigrid.is_err() { "; multigrid stalled" } else { "" };
-        let reason =
-            format!("by auto: {size} unknowns ({} a membrane), {hierarchy}{stalled}", grouped(unknowns));
-        candidate.statistics.choice = Some(reason);
+        let (few, hierarchy) = small(refinements);
+        let by_active_set = |problem: Problem| problem.by_active_set(options);
+        let (mut candidate, reason) = match self.problem {
+            Problem::Stack(d) if !d.is_obstacle_problem() => {
+                let reason = format!("{} ({} unknowns)", structure(d), grouped(unknowns));
+                (by_active_set(self.problem)?, reason)
+            }
+            problem => {
+                let (candidate, size) = if unknowns <= few {
+                    (by_active_set(problem)?, "few")
+                } else {
+                    (self.multigrid_or_active_set(options)?, "many")
+                };
+                let stalled =
+                    if size == "many" && self.multigrid.is_err() { "; multigrid stalled" } else { "" };
+                let size = match problem {
+                    Problem::Pair(_) => format!("{size} unknowns ({} a membrane)", grouped(unknowns)),
+                    Problem::Stack(d) => format!("{}, {size} unknowns ({})", structure(d), grouped(unknowns)),
+                };
+                (candidate, format!("{size}, {hierarchy}{stalled}"))
+            }
+        };
+        candidate.statistics.choice = Some(format!("by auto: {reason}"));
         Ok(candidate)
     }
 }
@@ -83,7 +109,7 @@ impl PreparedAuto<'_> {
         let multigrid = match &mut self.multigrid {
             Ok(multigrid) => multigrid,
             Err(stalled) => {
-                let mut candidate = ActiveSet.solve(self.d, options)?;
+                let mut candidate = self.problem.by_active_set(options)?;
                 candidate.statistics.stalled.clone_from(stalled);
                 return Ok(candidate);
             }
@@ -96,8 +122,8 @@ impl PreparedAuto<'_> {
         }
         // Its levels go before the other method needs memory.
         self.multigrid = Err(Vec::new());
-        let mut candidate =
-            ActiveSet.solve(self.d, &SolverOptions { time_limit: left.flatten(), ..options.clone() })?;
+        let options = SolverOptions { time_limit: left.flatten(), ..options.clone() };
+        let mut candidate = self.problem.by_active_set(&options)?;
         let method = format!("{} on algebraic levels", Multigrid.name());
         candidate.statistics = candidate.statistics.after(method, stalled.statistics);
         self.multigrid = Err(candidate.statistics.stalled.clone());
@@ -105,40 +131,28 @@ impl PreparedAuto<'_> {
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::mesh::{Pattern, rectangle};
-    use crate::problem::ContactProblem;
-
-    /// Very flat crossed cells: large positive entries off the diagonal, which no levels of multigrid are good for.
-    #[test]
-    fn where_multigrid_stalls_the_active_set_method_takes_over() {
-        let problem =
-            ContactProblem::builder().tension(1.0, 3.0).load(-1.5e5, 1e5).height(0.1).build().unwrap();
-        let choice = |height: f64| {
-            let mesh = rectangle([0.0, 0.0], [1.0, height], [64; 2], Pattern::Crossed).unwrap();
-            let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
-            let mut auto = Auto;
-            let mut prepared = auto.prepare(&d);
-            let mut solve = || prepared.solve(&SolverOptions::default()).expect("it runs").statistics;
-            let [first, second] = [solve(), solve()];
-            assert_eq!([first.status, second.status], [Status::Solved; 2], "{first:?} {second:?}");
-            // What has stalled in the first solve is not tried again, and the second one says so too.
-            assert_eq!((&first.choice, &first.stalled), (&second.choice, &second.stalled));
-            first
-        };
-        let found = choice(0.01);
-        let reason = found.choice.expect("it was left open");
-        assert_eq!(found.solver, ActiveSet.name());
-        assert!(reason.ends_with("; multigrid stalled"), "{reason}");
-        let methods: Vec<&str> = found.stalled.iter().map(|stalled| stalled.method.as_str()).collect();
-        assert_eq!(methods, ["multigrid on levels of 6 refinements", "multigrid on algebraic levels"]);
-        assert!(found.stalled.iter().all(|stalled| stalled.iterations > 0));
-        let found = choice(1.0);
-        let reason = found.choice.expect("it was left open");
-        assert_eq!(found.solver, Multigrid.name());
-        assert!(!reason.contains("stalled"), "{reason}");
-        assert!(found.stalled.is_empty());
+impl Problem<'_> {
+    fn by_active_set(self, options: &SolverOptions) -> Result<Candidate, SolverError> {
+        match self {
+            Self::Pair(d) => ActiveSet.solve_pair(d, options),
+            Self::Stack(d) => ActiveSet.solve_stack(d, options),
+        }
     }
 }
+
+/// What kind of stack it is.
+fn structure(d: &StackDiscretization) -> String {
+    let obstacles = match d.has_obstacles() {
+        [false, false] => "",
+        [true, false] => " under a ceiling",
+        [false, true] => " over a floor",
+        [true, true] => " between a ceiling and a floor",
+    };
+    match d.membranes() {
+        1 => format!("one membrane{obstacles}"),
+        n => format!("{n} coupled membranes{obstacles}"),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -3,22 +3,48 @@
 use super::candidate::Candidate;
 use super::error::SolverError;
 use super::options::SolverOptions;
-use crate::discretization::PairDiscretization;
+use crate::discretization::{Discretization, PairDiscretization, StackDiscretization};
 
-/// Anything that solves (3.4): a [`QpBackend`](crate::qp::QpBackend) by way of [`QpSolver`](super::QpSolver), or a method of its own.
+/// Anything that solves contact problems: a [`QpBackend`](crate::qp::QpBackend) by way of [`QpSolver`](super::QpSolver), or a method of
+/// its own.
 pub trait ContactSolver: Send {
     /// The name in summaries and messages.
     fn name(&self) -> &str;
 
-    /// Solves the problem, or stops early and says so in the statistics.
+    /// Solves the paper's pair (3.4), or stops early and says so in the statistics.
     ///
     /// # Errors
     /// [`SolverError`] when it cannot run at all.
-    fn solve(&mut self, d: &PairDiscretization, options: &SolverOptions) -> Result<Candidate, SolverError>;
+    fn solve_pair(
+        &mut self,
+        d: &PairDiscretization,
+        options: &SolverOptions,
+    ) -> Result<Candidate, SolverError>;
+
+    /// Solves any other stack, likewise.
+    ///
+    /// # Errors
+    /// [`SolverError`] when it cannot run at all, or not for such a stack.
+    fn solve_stack(
+        &mut self,
+        d: &StackDiscretization,
+        options: &SolverOptions,
+    ) -> Result<Candidate, SolverError>;
+
+    /// Solves either.
+    ///
+    /// # Errors
+    /// [`SolverError`] when it cannot run at all, or not for such a stack.
+    fn solve(&mut self, d: &Discretization, options: &SolverOptions) -> Result<Candidate, SolverError> {
+        match d {
+            Discretization::Pair(d) => self.solve_pair(d, options),
+            Discretization::Stack(d) => self.solve_stack(d, options),
+        }
+    }
 
     /// The solver for one discretization, to be solved more than once: what can be used again is made once. As it is, nothing
     /// is kept.
-    fn prepare<'s>(&'s mut self, d: &'s PairDiscretization) -> Box<dyn PreparedSolver + 's> {
+    fn prepare<'s>(&'s mut self, d: &'s Discretization) -> Box<dyn PreparedSolver + 's> {
         Box::new(Unprepared { solver: self, d })
     }
 }
@@ -35,7 +61,7 @@ pub trait PreparedSolver {
 /// A solver that keeps nothing.
 struct Unprepared<'s, S: ?Sized> {
     solver: &'s mut S,
-    d: &'s PairDiscretization,
+    d: &'s Discretization,
 }
 
 impl<S: ContactSolver + ?Sized> PreparedSolver for Unprepared<'_, S> {

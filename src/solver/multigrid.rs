@@ -1,25 +1,18 @@
-//! Multigrid on the decoupled problem.
+//! Multigrid.
 
 #[cfg(test)]
 mod tests;
 
 use web_time::Instant;
 
-use super::decoupled::Decoupled;
-use super::{
-    Candidate, ContactSolver, PreparedSolver, SolverError, SolverOptions, Stalled, StartingPoint, Statistics,
-};
-use crate::discretization::PairDiscretization;
-use crate::multigrid::half::{HalfProblem, MAX_CYCLES, solve};
-use crate::multigrid::hierarchy::Hierarchy;
+use super::{Candidate, ContactSolver, PreparedSolver, SolverError, SolverOptions, Stalled, pair, stack};
+use crate::discretization::{Discretization, PairDiscretization, StackDiscretization};
+use crate::multigrid::hierarchy::{Genealogy, Hierarchy};
 use crate::qp::Status;
 
 const NAME: &str = "multigrid";
 
-/// Both halves may miss the tolerance by as much: their residuals add up in those of the membranes.
-const SHARE: f64 = 0.5;
-
-/// The contact problem decoupled; both halves by multigrid, one on each of two threads.
+/// The pair decoupled, both halves by multigrid, one on each of two threads; or one membrane with at most one obstacle.
 ///
 /// Truncated nonsmooth Newton multigrid for the gap, plain multigrid for the sum, on the refinements that made the mesh and
 /// on algebraic levels below them; on algebraic levels alone where it stalls on those, as on stretched triangles; nested
@@ -34,39 +27,92 @@ impl ContactSolver for Multigrid {
         NAME
     }
 
-    fn solve(&mut self, d: &PairDiscretization, options: &SolverOptions) -> Result<Candidate, SolverError> {
-        PreparedMultigrid::new(d).solve(options)
+    fn solve_pair(
+        &mut self,
+        d: &PairDiscretization,
+        options: &SolverOptions,
+    ) -> Result<Candidate, SolverError> {
+        PreparedMultigrid::new(Problem::Pair(d)).solve(options)
     }
 
-    fn prepare<'s>(&'s mut self, d: &'s PairDiscretization) -> Box<dyn PreparedSolver + 's> {
-        Box::new(PreparedMultigrid::new(d))
+    fn solve_stack(
+        &mut self,
+        d: &StackDiscretization,
+        options: &SolverOptions,
+    ) -> Result<Candidate, SolverError> {
+        PreparedMultigrid::new(Problem::Stack(d)).solve(options)
+    }
+
+    fn prepare<'s>(&'s mut self, d: &'s Discretization) -> Box<dyn PreparedSolver + 's> {
+        Box::new(PreparedMultigrid::new(d.into()))
+    }
+}
+
+/// What it solves.
+#[derive(Clone, Copy)]
+pub(super) enum Problem<'d> {
+    Pair(&'d PairDiscretization),
+    Stack(&'d StackDiscretization),
+}
+
+impl<'d> From<&'d Discretization> for Problem<'d> {
+    fn from(d: &'d Discretization) -> Self {
+        match d {
+            Discretization::Pair(d) => Self::Pair(d),
+            Discretization::Stack(d) => Self::Stack(d),
+        }
+    }
+}
+
+impl Problem<'_> {
+    fn levels(self, genealogy: fn(&crate::mesh::Mesh) -> Genealogy) -> Hierarchy {
+        match self {
+            Self::Pair(d) => Hierarchy::of_pair(d, &genealogy(d.mesh())),
+            Self::Stack(d) => {
+                let is_free: Vec<bool> =
+                    (0..d.mesh().points().len()).map(|a| d.unknown(1, a).is_some()).collect();
+                Hierarchy::over(&d.matrix(1), &is_free, &genealogy(d.mesh()))
+            }
+        }
+    }
+
+    fn solve_on(
+        self,
+        hierarchy: &Hierarchy,
+        options: &SolverOptions,
+        start: Instant,
+    ) -> Result<Candidate, SolverError> {
+        match self {
+            Self::Pair(d) => pair::multigrid::solve_on(hierarchy, d, NAME, options, start),
+            Self::Stack(d) => stack::multigrid::solve_on(hierarchy, d, NAME, options, start),
+        }
     }
 }
 
 /// Multigrid for one discretization, whose levels are made once.
 pub(super) struct PreparedMultigrid<'d> {
-    d: &'d PairDiscretization,
+    problem: Problem<'d>,
     hierarchy: Option<Hierarchy>,
     /// Levels that are not tried again: those of the refinements, once it has stalled on them.
     stalled: Vec<Stalled>,
 }
 
 impl<'d> PreparedMultigrid<'d> {
-    pub(super) fn new(d: &'d PairDiscretization) -> Self {
-        Self { d, hierarchy: None, stalled: Vec::new() }
+    pub(super) fn new(problem: Problem<'d>) -> Self {
+        Self { problem, hierarchy: None, stalled: Vec::new() }
     }
 
-    /// Solves on the levels that there are, else on those that are made by `levels`; the time limit counts from `start`.
+    /// Solves on the levels that there are, else on those that are made by this genealogy; the time limit counts from `start`.
     fn attempt(
         &mut self,
-        levels: fn(&PairDiscretization) -> Hierarchy,
+        genealogy: fn(&crate::mesh::Mesh) -> Genealogy,
         options: &SolverOptions,
         start: Instant,
     ) -> Result<Candidate, SolverError> {
         let begin = Instant::now();
-        let hierarchy = self.hierarchy.get_or_insert_with(|| levels(self.d));
+        let hierarchy = self.hierarchy.get_or_insert_with(|| self.problem.levels(genealogy));
         let setup_seconds = begin.elapsed().as_secs_f64();
-        let mut candidate = solve_on(hierarchy, self.d, options, start)?;
+        let mut candidate = self.problem.solve_on(hierarchy, options, start)?;
         candidate.statistics.setup_seconds = setup_seconds;
         candidate.statistics.solve_seconds = begin.elapsed().as_secs_f64() - setup_seconds;
         Ok(candidate)
@@ -76,79 +122,25 @@ impl<'d> PreparedMultigrid<'d> {
 impl PreparedSolver for PreparedMultigrid<'_> {
     fn solve(&mut self, options: &SolverOptions) -> Result<Candidate, SolverError> {
         options.check()?;
+        if let Problem::Stack(d) = self.problem
+            && !d.is_obstacle_problem()
+        {
+            return Err(SolverError::Coupled);
+        }
         let start = Instant::now();
-        let mut candidate = self.attempt(Hierarchy::new, options, start)?;
+        let mut candidate = self.attempt(Genealogy::of, options, start)?;
         candidate.statistics.stalled.clone_from(&self.stalled);
         let refinements = self.hierarchy.as_ref().map_or(0, Hierarchy::refinements);
         if candidate.statistics.status != Status::Stalled || refinements == 0 {
             return Ok(candidate);
         }
+        // On stretched triangles coarser meshes are no good: their neighbours along the long sides are hardly coupled.
         self.hierarchy = None;
-        let mut on_algebraic_levels = self.attempt(Hierarchy::algebraic, options, start)?;
+        let unknown = |mesh: &crate::mesh::Mesh| Genealogy::unknown(mesh.points().len());
+        let mut on_algebraic_levels = self.attempt(unknown, options, start)?;
         let method = format!("{NAME} on levels of {refinements} refinements");
         on_algebraic_levels.statistics = on_algebraic_levels.statistics.after(method, candidate.statistics);
         self.stalled.clone_from(&on_algebraic_levels.statistics.stalled);
         Ok(on_algebraic_levels)
     }
-}
-
-/// Solves on these levels; the time limit counts from `start`. The seconds in the statistics are left to others.
-fn solve_on(
-    hierarchy: &Hierarchy,
-    d: &PairDiscretization,
-    options: &SolverOptions,
-    start: Instant,
-) -> Result<Candidate, SolverError> {
-    let decoupled = Decoupled::new(d);
-    let [gap, sum] = halves(hierarchy, &decoupled, d, options);
-    let limits = options.limits(MAX_CYCLES, start);
-    let (gap, sum) =
-        crate::parallel::join(|| solve(hierarchy, gap, &limits), || solve(hierarchy, sum, &limits));
-    let (gap, sum) = (gap?, sum?);
-    let level_iterations: Vec<usize> = gap.cycles.iter().zip(&sum.cycles).map(|(a, b)| *a.max(b)).collect();
-    let (w, (s, y)) = crate::parallel::join(
-        || hierarchy.to_vertices(&gap.x),
-        || (hierarchy.to_vertices(&sum.x), hierarchy.to_vertices(&gap.y)),
-    );
-    let status = if gap.status == Status::Solved { sum.status } else { gap.status };
-    Ok(Candidate {
-        displacement: decoupled.recombine(&s, &w),
-        multiplier: d.interior().iter().map(|&a| decoupled.gap_tension() * y[a]).collect(),
-        statistics: Statistics {
-            iterations: level_iterations.last().copied().unwrap_or(0),
-            level_iterations,
-            energies: gap.energies,
-            ..Statistics::of(NAME, status)
-        },
-    })
-}
-
-/// The gap and the sum.
-fn halves(
-    hierarchy: &Hierarchy,
-    decoupled: &Decoupled,
-    d: &PairDiscretization,
-    options: &SolverOptions,
-) -> [HalfProblem; 2] {
-    let force = SHARE * options.tolerance * d.scales().force_density;
-    let start = options.warm_start.as_ref().filter(|start| start.fits(d));
-    let [mu1, mu2] = d.tension();
-    let guess = |combine: &(dyn Fn(&StartingPoint, usize) -> f64 + Sync)| {
-        start.map(|start| hierarchy.to_rows(|a| combine(start, a)))
-    };
-    let gap = HalfProblem {
-        load: hierarchy.to_rows(|a| decoupled.gap_load(a)),
-        height: hierarchy.to_rows(|a| d.height()[a]),
-        lower: 0.0,
-        weight: hierarchy.to_rows(|a| decoupled.gap_tension() / (force * d.dual_area()[a])),
-        start: guess(&|start, a| start.displacement[0][a] - start.displacement[1][a]),
-    };
-    let sum = HalfProblem {
-        load: hierarchy.to_rows(|a| decoupled.sum_load(a)),
-        height: hierarchy.to_rows(|a| decoupled.sum_height(a)),
-        lower: f64::NEG_INFINITY,
-        weight: hierarchy.to_rows(|a| 1.0 / (force * d.dual_area()[a])),
-        start: guess(&|start, a| mu1 * start.displacement[0][a] + mu2 * start.displacement[1][a]),
-    };
-    [gap, sum]
 }

@@ -2,12 +2,11 @@
 
 use web_time::Instant;
 
-use super::candidate::unknowns;
-use super::polish::polish;
-use super::{Candidate, ContactSolver, SolverError, SolverOptions, Statistics};
-use crate::discretization::PairDiscretization;
+use super::{Candidate, ContactSolver, PolishReport, SolverError, SolverOptions, Statistics, pair, stack};
+use crate::discretization::{PairDiscretization, StackDiscretization};
 use crate::qp::{
     Answer, BackendError, QpBackend, QpOptions, QpProblem, QpSolution, Status, TimeLimit, contact_qp,
+    stack_qp,
 };
 
 /// Poses (3.4) as a [`QpProblem`], has it solved by a backend, and polishes the answer.
@@ -22,7 +21,7 @@ impl QpSolver {
     }
 
     /// The backend's answer, in the time that is left since `begin`; what came before it is set-up.
-    pub(super) fn answer(
+    fn answer(
         &mut self,
         qp: &QpProblem,
         options: &SolverOptions,
@@ -54,21 +53,50 @@ impl ContactSolver for QpSolver {
         self.backend.name()
     }
 
-    fn solve(&mut self, d: &PairDiscretization, options: &SolverOptions) -> Result<Candidate, SolverError> {
+    fn solve_pair(
+        &mut self,
+        d: &PairDiscretization,
+        options: &SolverOptions,
+    ) -> Result<Candidate, SolverError> {
         options.check()?;
         let start = Instant::now();
         let qp = contact_qp(d);
         let guess = options.warm_start.as_ref().filter(|guess| guess.fits(d));
-        let warm_start = guess.map(|guess| (unknowns(d, &guess.displacement), guess.multiplier.clone()));
+        let warm_start =
+            guess.map(|guess| (pair::unknowns(d, &guess.displacement), guess.multiplier.clone()));
         let (answer, statistics) = self.answer(&qp, options, warm_start, start)?;
-        let mut candidate = Candidate::from_answer(d, answer, statistics);
-        if options.polish {
-            candidate.statistics.polish = polish(d, &qp, &mut candidate, options, start);
-        }
-        candidate.statistics.solve_seconds =
-            start.elapsed().as_secs_f64() - candidate.statistics.setup_seconds;
-        Ok(candidate)
+        let candidate = Candidate::from_pair_answer(d, answer, statistics);
+        Ok(polished(candidate, options, start, |candidate| pair::polish(d, &qp, candidate, options, start)))
     }
+
+    fn solve_stack(
+        &mut self,
+        d: &StackDiscretization,
+        options: &SolverOptions,
+    ) -> Result<Candidate, SolverError> {
+        options.check()?;
+        let start = Instant::now();
+        let qp = stack_qp(d);
+        let guess = options.warm_start.as_ref().filter(|guess| guess.fits_stack(d));
+        let warm_start = guess.map(|guess| (d.restrict(&guess.displacement), guess.multiplier.clone()));
+        let (answer, statistics) = self.answer(&qp, options, warm_start, start)?;
+        let candidate = Candidate::from_stack_answer(d, answer, statistics);
+        Ok(polished(candidate, options, start, |candidate| stack::polish(d, &qp, candidate, options, start)))
+    }
+}
+
+/// The candidate after a polish, if that is asked for, and the seconds of the solve.
+fn polished(
+    mut candidate: Candidate,
+    options: &SolverOptions,
+    start: Instant,
+    polish: impl FnOnce(&mut Candidate) -> Option<PolishReport>,
+) -> Candidate {
+    if options.polish {
+        candidate.statistics.polish = polish(&mut candidate);
+    }
+    candidate.statistics.solve_seconds = start.elapsed().as_secs_f64() - candidate.statistics.setup_seconds;
+    candidate
 }
 
 /// Has the problem solved in units of size 1, so that one tolerance fits every mesh (`q ~ h^2`) and all data.

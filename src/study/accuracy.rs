@@ -4,9 +4,9 @@ use thiserror::Error;
 use web_time::Instant;
 
 use super::prolongation::Fields;
-use crate::action::{PairSolution, Rejected, certify_pair};
-use crate::discretization::PairDiscretization;
-use crate::estimate::{ErrorBound, ErrorBounds, MeasureError};
+use crate::action::{ContactSolution, Rejected, certify};
+use crate::discretization::Discretization;
+use crate::estimate::{ContactBounds, ErrorBound, MeasureError, NoBound};
 use crate::problem::{ContactProblem, Domain};
 use crate::solver::{Candidate, ContactSolver, SolverError, SolverOptions};
 
@@ -50,9 +50,9 @@ impl Tolerance {
 #[derive(Debug, Clone)]
 pub struct Bounded {
     /// The solution.
-    pub solution: PairSolution,
-    /// The bound of its energy error.
-    pub bound: ErrorBound,
+    pub solution: ContactSolution,
+    /// The bound of its energy error, or why there is none.
+    pub bound: Result<ErrorBound, NoBound>,
     /// The tolerance within which it is certified.
     pub tolerance: f64,
     /// Seconds that the bound took.
@@ -82,14 +82,14 @@ pub enum AccuracyError {
 pub fn solve_bounded(
     problem: &ContactProblem,
     domain: Option<&Domain>,
-    d: &PairDiscretization,
+    d: &Discretization,
     solver: &mut dyn ContactSolver,
     options: &SolverOptions,
     tolerance: Tolerance,
 ) -> Result<Bounded, AccuracyError> {
-    let bounds = ErrorBounds::new(problem, domain, d);
+    let bounds = ContactBounds::new(problem, domain, d);
     let bounded = |candidate: Candidate, tolerance: f64| {
-        let solution = certify_pair(d, candidate, tolerance)
+        let solution = certify(d, candidate, tolerance)
             .map_err(|rejected| AccuracyError::Rejected(rejected, tolerance))?;
         Ok(Bounded::new(&bounds, solution, tolerance)?)
     };
@@ -124,8 +124,8 @@ pub fn solve_bounded(
 impl Bounded {
     /// Bounds the error of a solution that is certified within `tolerance`.
     pub(super) fn new(
-        bounds: &ErrorBounds,
-        solution: PairSolution,
+        bounds: &ContactBounds,
+        solution: ContactSolution,
         tolerance: f64,
     ) -> Result<Self, MeasureError> {
         let start = Instant::now();
@@ -133,14 +133,19 @@ impl Bounded {
         Ok(Self { solution, bound, tolerance, bound_seconds: start.elapsed().as_secs_f64() })
     }
 
-    /// The tolerance with which the solver would leave a small fraction; `None` when it leaves no more already.
+    /// The tolerance with which the solver would leave a small fraction; `None` when it leaves no more already. Without a bound,
+    /// nobody knows what it leaves: then it is the default one.
     fn tighter(&self) -> Option<f64> {
-        let allowed = FRACTION * self.bound.parts.discretization();
-        if self.bound.parts.algebraic <= allowed || self.tolerance <= TIGHTEST {
+        let Ok(ErrorBound { parts, .. }) = &self.bound else {
+            let default = SolverOptions::default().tolerance;
+            return (self.tolerance > default).then_some(default);
+        };
+        let allowed = FRACTION * parts.discretization();
+        if parts.algebraic <= allowed || self.tolerance <= TIGHTEST {
             return None;
         }
         // What the solver leaves is about proportional to the tolerance.
-        let proportional = 0.5 * self.tolerance * allowed / self.bound.parts.algebraic;
+        let proportional = 0.5 * self.tolerance * allowed / parts.algebraic;
         Some(proportional.clamp(TIGHTEST, 0.1 * self.tolerance))
     }
 }
@@ -156,7 +161,7 @@ mod tests {
         let problem =
             ContactProblem::builder().tension(1.0, 3.0).load(-15.0, 10.0).height(0.1).build().unwrap();
         let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [64, 64], Pattern::Right).unwrap();
-        let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
+        let d = Discretization::new(&problem, mesh.clone()).unwrap();
         let options = SolverOptions { polish: false, ..SolverOptions::default() };
         solve_bounded(&problem, None, &d, solver, &options, tolerance).unwrap()
     }
@@ -166,7 +171,8 @@ mod tests {
         let solvers: [Box<dyn ContactSolver>; 2] = [Box::new(Multigrid), Box::new(QpSolver::new(Clarabel))];
         for mut solver in solvers {
             let auto = solve(&mut *solver, Tolerance::Auto);
-            let fraction = auto.bound.parts.algebraic / auto.bound.parts.discretization();
+            let bound = auto.bound.as_ref().unwrap();
+            let fraction = bound.parts.algebraic / bound.parts.discretization();
             assert!(fraction <= FRACTION, "{}: {fraction}", solver.name());
             assert!(
                 auto.tolerance > 1e-8,
@@ -175,7 +181,10 @@ mod tests {
                 auto.tolerance
             );
             let tight = solve(&mut *solver, Tolerance::Fixed(1e-10));
-            assert!((auto.bound.total / tight.bound.total - 1.0).abs() < 2.0 * FRACTION, "the same bound");
+            assert!(
+                (bound.total / tight.bound.unwrap().total - 1.0).abs() < 2.0 * FRACTION,
+                "the same bound"
+            );
         }
         // The negative test: as loose as it starts, the solver leaves more than that.
         let loose = solve(&mut QpSolver::new(Clarabel), Tolerance::Fixed(LOOSEST));

@@ -7,9 +7,9 @@ use web_time::Instant;
 use super::accuracy::{Bounded, Tolerance, solve_bounded};
 use super::prolongation::Fields;
 use super::{StudyError, mark};
-use crate::action::{PairSolution, certify_pair};
-use crate::discretization::{Displacement, PairDiscretization};
-use crate::estimate::{ErrorBound, ErrorBounds, energy_error, residual_indicators};
+use crate::action::{ContactSolution, certify};
+use crate::discretization::{Discretization, Displacements};
+use crate::estimate::{ContactBounds, ErrorBound, energy_error, residual_indicators};
 use crate::mesh::{Bisection, Mesh};
 use crate::problem::{ContactProblem, Domain, ExactSolution};
 use crate::qp::TimeLimit;
@@ -35,7 +35,7 @@ pub struct AdaptiveStudy {
     tolerance: Tolerance,
     marked: Vec<Vec<usize>>,
     /// The current mesh's discretization and solution.
-    last: Option<(PairDiscretization, Bounded)>,
+    last: Option<(Arc<Discretization>, Bounded)>,
 }
 
 /// One level: a mesh and the error on it. Written as a row of `adapt.csv`.
@@ -68,8 +68,8 @@ pub struct AdaptiveLevel {
     pub boundary: f64,
     /// Likewise.
     pub algebraic: f64,
-    /// The residual estimator with the action of the bound, see [`residual_indicators`].
-    pub residual_estimator: f64,
+    /// The residual estimator with the action of the bound, see [`residual_indicators`]; of a pair only.
+    pub residual_estimator: Option<f64>,
     /// `|||u_h|||`.
     pub energy_norm: f64,
     /// The energy error; empty where no exact solution is known.
@@ -96,10 +96,10 @@ impl AdaptiveLevel {
 pub struct Checkpoint {
     /// Of each refinement the triangles that were marked.
     pub marked: Vec<Vec<usize>>,
-    /// `[u1, u2]` over vertices, as they were certified.
-    pub displacement: Displacement,
-    /// `lambda_h` over vertices, likewise.
-    pub lambda: Vec<f64>,
+    /// Over vertices, one for each membrane from the top, as they were certified.
+    pub displacement: Displacements,
+    /// The actions in the gaps, over vertices, likewise.
+    pub actions: Vec<Vec<f64>>,
     /// The tolerance within which they are certified.
     pub tolerance: f64,
     /// How they were found.
@@ -141,12 +141,12 @@ impl AdaptiveStudy {
     }
 
     /// The solution on the current mesh and its bound, once there is one.
-    pub fn solution(&self) -> Option<(&PairSolution, &ErrorBound)> {
-        self.last.as_ref().map(|(_, last)| (&last.solution, &last.bound))
+    pub fn solution(&self) -> Option<(&ContactSolution, &ErrorBound)> {
+        self.last.as_ref().and_then(|(_, last)| Some((&last.solution, last.bound.as_ref().ok()?)))
     }
 
     /// The discretization that it solves.
-    pub fn discretization(&self) -> Option<&PairDiscretization> {
+    pub fn discretization(&self) -> Option<&Arc<Discretization>> {
         self.last.as_ref().map(|(d, _)| d)
     }
 
@@ -159,7 +159,8 @@ impl AdaptiveStudy {
         let prolonged = match &self.last {
             None => None,
             Some((_, last)) => {
-                let marked = mark(&last.bound.indicators, FRACTION);
+                let bound = last.bound.as_ref().expect("a level without a bound is an error");
+                let marked = mark(&bound.indicators, FRACTION);
                 let parents = self.bisection.refine(&marked)?;
                 self.marked.push(marked);
                 Some(Fields::from(&last.solution).prolonged(&parents))
@@ -167,7 +168,7 @@ impl AdaptiveStudy {
         };
         self.last = None;
         let level = self.marked.len();
-        let d = PairDiscretization::new(&self.problem, self.bisection.mesh().clone())?;
+        let d = Discretization::new(&self.problem, self.bisection.mesh().clone())?;
         let warm_start = prolonged.map(|fields| fields.into_start(&d));
         let options = SolverOptions { warm_start, ..self.options.clone() };
         let domain = self.domain.as_ref();
@@ -175,20 +176,25 @@ impl AdaptiveStudy {
             .map_err(|error| StudyError::at(level, error))?;
         let seconds = start.elapsed().as_secs_f64();
         let row = self.row(&d, &bounded, seconds)?;
-        self.last = Some((d, bounded));
+        self.last = Some((Arc::new(d), bounded));
         Ok(row)
     }
 
     fn row(
         &self,
-        d: &PairDiscretization,
+        d: &Discretization,
         bounded: &Bounded,
         solve_seconds: f64,
     ) -> Result<AdaptiveLevel, StudyError> {
         let Bounded { solution, bound, tolerance, bound_seconds } = bounded;
-        let displacement = solution.displacement();
-        let residuals = residual_indicators(d, displacement, &bound.actions[0])?;
-        let error = self.exact.as_ref().map(|exact| energy_error(d, displacement, exact)).transpose()?;
+        let bound = bound.as_ref().map_err(|reason| StudyError::NoBound(reason.clone()))?;
+        let (mut residual_estimator, mut error) = (None, None);
+        if let (Some(d), Some(solution)) = (d.as_pair(), solution.as_pair()) {
+            let displacement = solution.displacement();
+            let residuals = residual_indicators(d, displacement, &bound.actions[0])?;
+            residual_estimator = Some(residuals.iter().sum::<f64>().sqrt());
+            error = self.exact.as_ref().map(|exact| energy_error(d, displacement, exact)).transpose()?;
+        }
         let quality = d.mesh().quality();
         let parts = bound.parts;
         Ok(AdaptiveLevel {
@@ -205,7 +211,7 @@ impl AdaptiveStudy {
             contact: parts.contact,
             boundary: parts.boundary,
             algebraic: parts.algebraic,
-            residual_estimator: residuals.iter().sum::<f64>().sqrt(),
+            residual_estimator,
             energy_norm: bound.energy_norm,
             energy_error: error,
             tolerance: *tolerance,
@@ -218,11 +224,11 @@ impl AdaptiveStudy {
     /// What a later run goes on from; `None` before the first level.
     pub fn checkpoint(&self) -> Option<Checkpoint> {
         self.last.as_ref().map(|(_, last)| {
-            let (displacement, lambda) = last.solution.certified();
+            let (displacement, actions) = last.solution.certified();
             Checkpoint {
                 marked: self.marked.clone(),
-                displacement: displacement.clone(),
-                lambda: lambda.to_vec(),
+                displacement: displacement.to_vec(),
+                actions: actions.into_iter().map(<[f64]>::to_vec).collect(),
                 tolerance: last.tolerance,
                 statistics: last.solution.statistics().clone(),
             }
@@ -235,9 +241,9 @@ impl AdaptiveStudy {
     /// # Errors
     /// [`StudyError`] when the problem cannot be posed on the mesh.
     pub fn resume(&mut self, checkpoint: Checkpoint) -> Result<bool, StudyError> {
-        let Checkpoint { marked, displacement, lambda, tolerance, statistics } = checkpoint;
-        let vertices = lambda.len();
-        let is_whole = displacement.iter().all(|values| values.len() == vertices);
+        let Checkpoint { marked, displacement, actions, tolerance, statistics } = checkpoint;
+        let vertices = displacement.first().map_or(0, Vec::len);
+        let is_whole = displacement.iter().chain(&actions).all(|values| values.len() == vertices);
         if !is_whole || !(tolerance <= self.tolerance.loosest()) || marked.len() > MAX_REFINEMENTS {
             return Ok(false);
         }
@@ -255,15 +261,20 @@ impl AdaptiveStudy {
         if bisection.mesh().points().len() != vertices {
             return Ok(false);
         }
-        let d = PairDiscretization::new(&self.problem, bisection.mesh().clone())?;
-        let StartingPoint { displacement, multiplier } = Fields { displacement, lambda }.into_start(&d);
-        let Ok(solution) = certify_pair(&d, Candidate { displacement, multiplier, statistics }, tolerance)
-        else {
+        let d = Discretization::new(&self.problem, bisection.mesh().clone())?;
+        if displacement.len() != d.membranes() || actions.len() != d.gaps().len() {
+            return Ok(false);
+        }
+        let StartingPoint { displacement, multiplier } = Fields { displacement, actions }.into_start(&d);
+        let Ok(solution) = certify(&d, Candidate { displacement, multiplier, statistics }, tolerance) else {
             return Ok(false);
         };
-        let bounds = ErrorBounds::new(&self.problem, self.domain.as_ref(), &d);
+        let bounds = ContactBounds::new(&self.problem, self.domain.as_ref(), &d);
         let bounded = Bounded::new(&bounds, solution, tolerance)?;
-        self.last = Some((d, bounded));
+        if bounded.bound.is_err() {
+            return Ok(false);
+        }
+        self.last = Some((Arc::new(d), bounded));
         self.marked = marked;
         self.bisection = bisection;
         Ok(true)

@@ -188,7 +188,7 @@ fn attempt(
     blank: &Row,
 ) -> Row {
     let start = Instant::now();
-    let candidate = match solver.solve(d, options) {
+    let candidate = match solver.solve_pair(d, options) {
         Ok(candidate) => candidate,
         Err(error) => return Row { status: format!("error: {error}"), ..blank.clone() },
     };

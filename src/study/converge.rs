@@ -4,11 +4,11 @@ use thiserror::Error;
 use web_time::Instant;
 
 use super::LevelErrors;
-use super::accuracy::{AccuracyError, Bounded, Tolerance, solve_bounded};
+use super::accuracy::{AccuracyError, Tolerance, solve_bounded};
 use super::prolongation::Fields;
-use crate::action::Rejected;
-use crate::discretization::{PairDiscretization, PairError};
-use crate::estimate::{ErrorNorms, LoadWarning, MeasureError};
+use crate::action::{PairSolution, Rejected};
+use crate::discretization::{Discretization, DiscretizationError, PairDiscretization};
+use crate::estimate::{ErrorBound, ErrorNorms, LoadWarning, MeasureError, NoBound};
 use crate::mesh::{MeshError, MeshFamily};
 use crate::problem::{ContactProblem, ExactSolution, ProblemError};
 use crate::qp::TimeLimit;
@@ -40,7 +40,10 @@ pub enum StudyError {
     Mesh(#[from] MeshError),
     /// The problem cannot be posed.
     #[error(transparent)]
-    PairDiscretization(#[from] PairError),
+    Discretization(#[from] DiscretizationError),
+    /// There is no bound of the error, which the study rests on.
+    #[error("there is no bound of the error: {0}")]
+    NoBound(NoBound),
     /// The solver cannot run.
     #[error(transparent)]
     Solver(#[from] SolverError),
@@ -98,7 +101,7 @@ impl ConvergenceStudy {
     /// # Errors
     /// [`StudyError`].
     pub fn next_level(&mut self) -> Result<LevelErrors, StudyError> {
-        self.on_next_mesh(|exact, d, Bounded { solution, bound, .. }, level| {
+        self.on_next_mesh(|exact, d, solution, bound, level| {
             let start = Instant::now();
             let norms = ErrorNorms::new(d, solution, exact)?;
             let quality = d.mesh().quality();
@@ -132,7 +135,7 @@ impl ConvergenceStudy {
     /// # Errors
     /// [`StudyError`].
     pub fn skip_level(&mut self) -> Result<(), StudyError> {
-        self.on_next_mesh(|_, _, _, _| Ok(())).map(|_| ())
+        self.on_next_mesh(|_, _, _, _, _| Ok(())).map(|_| ())
     }
 
     /// The loads of which the quadrature may know too little on `level` for its bound to hold, where that is the last level or one
@@ -147,7 +150,8 @@ impl ConvergenceStudy {
         while self.vertices() < level.vertices {
             self.family.refine()?;
         }
-        let d = PairDiscretization::new(&self.problem, self.family.mesh().clone())?;
+        let d = PairDiscretization::new(&self.problem, self.family.mesh().clone())
+            .map_err(DiscretizationError::from)?;
         Ok(LoadWarning::all(&d, level.bound))
     }
 
@@ -155,7 +159,13 @@ impl ConvergenceStudy {
     /// `measure`; returns its result and the seconds up to there.
     fn on_next_mesh<T>(
         &mut self,
-        measure: impl FnOnce(&ExactSolution, &PairDiscretization, &Bounded, usize) -> Result<T, StudyError>,
+        measure: impl FnOnce(
+            &ExactSolution,
+            &PairDiscretization,
+            &PairSolution,
+            &ErrorBound,
+            usize,
+        ) -> Result<T, StudyError>,
     ) -> Result<(T, f64), StudyError> {
         let start = Instant::now();
         let level = self.level;
@@ -163,7 +173,7 @@ impl ConvergenceStudy {
             None => None,
             Some(last) => Some(last.prolonged(&self.family.refine()?)),
         };
-        let d = PairDiscretization::new(&self.problem, self.family.mesh().clone())?;
+        let d = Discretization::new(&self.problem, self.family.mesh().clone())?;
         let warm_start = prolonged.map(|fields| fields.into_start(&d));
         let options = SolverOptions { warm_start, ..self.options.clone() };
         let domain = self.exact.domain();
@@ -171,9 +181,12 @@ impl ConvergenceStudy {
             solve_bounded(&self.problem, Some(&domain), &d, &mut *self.solver, &options, self.tolerance)
                 .map_err(|error| StudyError::at(level, error))?;
         let seconds = start.elapsed().as_secs_f64();
-        let measured = measure(&self.exact, &d, &bounded, level)?;
+        let bound = bounded.bound.map_err(StudyError::NoBound)?;
+        let pair = d.as_pair().zip(bounded.solution.as_pair());
+        let (pair, solution) = pair.expect("the exact solutions are those of pairs");
+        let measured = measure(&self.exact, pair, solution, &bound, level)?;
         self.last = Some(Fields::from(&bounded.solution));
-        self.warnings = Some((self.vertices(), bounded.bound.warnings));
+        self.warnings = Some((self.vertices(), bound.warnings));
         self.level += 1;
         Ok((measured, seconds))
     }

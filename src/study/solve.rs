@@ -5,9 +5,9 @@ use std::sync::Arc;
 use thiserror::Error;
 
 use super::accuracy::{AccuracyError, Bounded, Tolerance, solve_bounded};
-use crate::action::PairSolution;
-use crate::discretization::{PairDiscretization, PairError};
-use crate::estimate::ErrorBound;
+use crate::action::ContactSolution;
+use crate::discretization::{Discretization, DiscretizationError};
+use crate::estimate::{ErrorBound, NoBound};
 use crate::mesh::Mesh;
 use crate::problem::ContactProblem;
 use crate::solver::{Auto, SolverOptions};
@@ -16,11 +16,11 @@ use crate::solver::{Auto, SolverOptions};
 #[derive(Debug, Clone)]
 pub struct Solved {
     /// The problem on its mesh.
-    pub discretization: PairDiscretization,
+    pub discretization: Discretization,
     /// Displacements, action and contact set, certified.
-    pub solution: PairSolution,
-    /// How far the displacements are from the exact ones at most.
-    pub bound: ErrorBound,
+    pub solution: ContactSolution,
+    /// How far the displacements are from the exact ones at most, or why that is not known.
+    pub bound: Result<ErrorBound, NoBound>,
 }
 
 /// There is no certified solution.
@@ -28,7 +28,7 @@ pub struct Solved {
 pub enum SolveError {
     /// The problem cannot be posed on the mesh.
     #[error(transparent)]
-    PairDiscretization(#[from] PairError),
+    Discretization(#[from] DiscretizationError),
     /// It cannot be solved, or not within the tolerance.
     #[error(transparent)]
     Accuracy(#[from] AccuracyError),
@@ -37,7 +37,7 @@ pub enum SolveError {
 /// Solves `problem` on `mesh` by the built-in solver that suits it, certifies the result within `options.tolerance`, and
 /// bounds its error. The boundary of the domain is taken for the polygon that the mesh covers.
 ///
-/// This is [`PairDiscretization::new`], [`Auto`], [`certify_pair`](crate::action::certify_pair) and [`ErrorBound::new`] in one; for another
+/// This is [`Discretization::new`], [`Auto`], [`certify`](crate::action::certify) and [`ContactBounds`](crate::estimate::ContactBounds) in one; for another
 /// solver, or a tolerance that follows the bound, see [`solve_bounded`].
 ///
 /// ```
@@ -47,7 +47,7 @@ pub enum SolveError {
 /// let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [32, 32], Pattern::Right)?;
 /// let solved = solve(&problem, mesh, &SolverOptions::default())?;
 /// assert!(solved.solution.total_force() > 0.0);
-/// println!("energy error at most {:.3}", solved.bound.total);
+/// println!("energy error at most {:.3}", solved.bound?.total);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
@@ -58,7 +58,7 @@ pub fn solve(
     mesh: impl Into<Arc<Mesh>>,
     options: &SolverOptions,
 ) -> Result<Solved, SolveError> {
-    let discretization = PairDiscretization::new(problem, mesh)?;
+    let discretization = Discretization::new(problem, mesh)?;
     let tolerance = Tolerance::Fixed(options.tolerance);
     let Bounded { solution, bound, .. } =
         solve_bounded(problem, None, &discretization, &mut Auto, options, tolerance)?;
@@ -81,13 +81,14 @@ mod tests {
     #[test]
     fn one_call_leads_to_a_certified_solution_with_its_bound() {
         let Solved { discretization, solution, bound } = solved(1e-8, 0.1).unwrap();
-        assert_eq!(solution.lambda().len(), discretization.mesh().points().len());
-        assert!(bound.total > 0.0 && solution.contact().contains(&true));
+        let gap = solution.gap(1).unwrap();
+        assert_eq!(gap.lambda.len(), discretization.mesh().points().len());
+        assert!(bound.unwrap().total > 0.0 && gap.contact.contains(&true));
     }
 
     #[test]
     fn every_stage_says_what_is_wrong() {
-        assert!(matches!(solved(1e-8, -2.0), Err(SolveError::PairDiscretization(_))));
+        assert!(matches!(solved(1e-8, -2.0), Err(SolveError::Discretization(_))));
         assert!(matches!(solved(2.0, 0.1), Err(SolveError::Accuracy(AccuracyError::Solver(_)))));
     }
 }

@@ -59,7 +59,7 @@ fn both_solvers_run_along_the_bisections() {
     assert!(statistics.iterations <= CYCLES, "{:?} cycles", statistics.level_iterations);
     let d = PairDiscretization::new(&problem(), mesh.clone()).unwrap();
     let options = SolverOptions { max_iterations: Some(TOO_FEW), ..SolverOptions::default() };
-    let stopped = Multigrid.solve(&d, &options).expect("it runs");
+    let stopped = Multigrid.solve_pair(&d, &options).expect("it runs");
     assert!(certify_pair(&d, stopped, TOLERANCE).is_err(), "cycles are needed");
     // The answer on the mesh that was bisected is another one.
     let [_, on_coarse] = solutions(&coarse);

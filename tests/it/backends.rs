@@ -192,7 +192,7 @@ fn the_active_set_needs_one_solve_from_its_own_answer_and_few_from_a_nearby_one(
         let problem = exact(Case::Circle, parameters).problem().unwrap();
         let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
         let options = SolverOptions { warm_start, ..SolverOptions::default() };
-        ActiveSet.solve(&d, &options).expect("it runs")
+        ActiveSet.solve_pair(&d, &options).expect("it runs")
     };
     let cold = steps(&[], None);
     assert_eq!(steps(&[], Some(cold.clone().into())).statistics.iterations, 1);
@@ -209,7 +209,7 @@ fn the_active_set_stopped_early_is_rejected() {
     let problem = exact(Case::Circle, &[]).problem().unwrap();
     let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
     let options = SolverOptions { max_iterations: Some(1), ..SolverOptions::default() };
-    let stopped = ActiveSet.solve(&d, &options).expect("it runs");
+    let stopped = ActiveSet.solve_pair(&d, &options).expect("it runs");
     assert_eq!((stopped.statistics.status, stopped.statistics.iterations), (Status::IterationLimit, 1));
     assert!(certify_pair(&d, stopped, TOLERANCE).is_err());
 }
@@ -219,7 +219,7 @@ fn options_out_of_range_are_refused() {
     let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [2, 2], Pattern::Right).unwrap();
     let problem = exact(Case::Circle, &[]).problem().unwrap();
     let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
-    let with = |options: SolverOptions| solvers()[0].solve(&d, &options).map(|_| ());
+    let with = |options: SolverOptions| solvers()[0].solve_pair(&d, &options).map(|_| ());
     assert!(with(SolverOptions::default()).is_ok());
     for tolerance in [0.0, 1.0, -1e-8, f64::NAN] {
         assert!(with(SolverOptions { tolerance, ..SolverOptions::default() }).is_err());
@@ -235,7 +235,7 @@ fn a_limit_of_time_is_kept_from_the_shortest_to_the_longest_by_every_solver() {
         let mut status = |seconds: f64| {
             let time_limit = Some(TimeLimit::from_seconds(seconds).expect("a limit"));
             let options = SolverOptions { time_limit, ..SolverOptions::default() };
-            solver.solve(&d, &options).expect("it runs").statistics.status
+            solver.solve_pair(&d, &options).expect("it runs").statistics.status
         };
         assert_eq!(status(1e-300), Status::TimeLimit);
         assert_eq!((status(60.0), status(1e19)), (Status::Solved, Status::Solved));
@@ -257,7 +257,7 @@ fn an_interrupt_is_heard_between_the_steps_of_a_solver() {
             let count = Arc::clone(&asked);
             let interrupt = Interrupt::new(move || count.fetch_add(1, Ordering::Relaxed) >= questions);
             let options = SolverOptions { interrupt: Some(interrupt), ..SolverOptions::default() };
-            let candidate = solver.solve(&d, &options).expect("it runs");
+            let candidate = solver.solve_pair(&d, &options).expect("it runs");
             (candidate, asked.load(Ordering::Relaxed))
         };
         let (whole, questions) = solved(usize::MAX);

@@ -335,7 +335,6 @@ const BAD_ARGUMENTS: &[(&str, &[&str], &str)] = &[
     ("check case.toml --refine 30", &["30 refinements", "refine less"], "check case.toml --refine 1"),
     ("export case.toml", &["--format"], "export case.toml --format qps"),
     ("bench floor.toml --levels 1", FOR_A_PAIR, "bench disk.toml --levels 1"),
-    ("adapt floor.toml --tolerance 0.5", FOR_A_PAIR, "adapt disk.toml --max-vertices 100 --tolerance 0.9"),
     ("converge floor.toml --levels 1", &["a known solution", "`case"], "converge disk.toml --levels 1"),
     ("export case.toml --format qpx", &["'qpx'", "qps, npz, mtx"], "export case.toml --format qps"),
     (

@@ -29,7 +29,7 @@ pub fn solvers() -> Vec<Box<dyn ContactSolver>> {
 /// Solves at [`TOLERANCE`].
 pub fn solve(solver: &mut dyn ContactSolver, d: &PairDiscretization, polish: bool) -> Candidate {
     let options = SolverOptions { tolerance: TOLERANCE, polish, ..SolverOptions::default() };
-    solver.solve(d, &options).expect("the backend runs")
+    solver.solve_pair(d, &options).expect("the backend runs")
 }
 
 /// A built-in case with some parameters chosen.

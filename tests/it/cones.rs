@@ -99,7 +99,7 @@ fn so_does_what_is_not_polished_or_loose() {
             for mut solver in solvers() {
                 let is = format!("{}, {name}, {tolerance:e}, {polish}", solver.name());
                 let options = SolverOptions { tolerance, polish, ..SolverOptions::default() };
-                let candidate = solver.solve(&d, &options).unwrap();
+                let candidate = solver.solve_pair(&d, &options).unwrap();
                 let solution = match certify_pair(&d, candidate, tolerance) {
                     Err(_) if may_be_rejected(solver.name(), &name, polish) => continue,
                     result => result.unwrap_or_else(|no| panic!("{is}: {no}")),
@@ -123,7 +123,7 @@ fn warm_starts_and_loose_ones_lead_to_the_same_contact() {
     for mut solver in solvers() {
         let start = solve(&mut *solver, &d_far, true);
         let options = SolverOptions { warm_start: Some(start.into()), ..SolverOptions::default() };
-        let solution = certify_pair(&d, solver.solve(&d, &options).unwrap(), TOLERANCE).unwrap();
+        let solution = certify_pair(&d, solver.solve_pair(&d, &options).unwrap(), TOLERANCE).unwrap();
         assert_eq!(faults(&d, &solution), [""; 0], "{}", solver.name());
         assert_eq!(solution.contact(), expected.contact(), "{}", solver.name());
     }
@@ -144,7 +144,7 @@ fn what_was_certified_is_certified_again_and_gives_the_same() {
                 };
                 let (displacement, lambda) = first.certified();
                 let candidate = Candidate {
-                    displacement: displacement.clone(),
+                    displacement: displacement.to_vec(),
                     multiplier: d.interior().iter().map(|&a| lambda[a] * d.dual_area()[a]).collect(),
                     statistics: first.statistics().clone(),
                 };

@@ -38,8 +38,9 @@ fn stopped_early_it_says_so_and_is_rejected() {
     let problem = exact(Case::Circle, &[]).problem().unwrap();
     let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
     let options = SolverOptions { polish: false, max_iterations: Some(1), ..SolverOptions::default() };
-    let stopped =
-        QpSolver::new(example::MethodOfMultipliers { penalty: 1.0 }).solve(&d, &options).expect("it runs");
+    let stopped = QpSolver::new(example::MethodOfMultipliers { penalty: 1.0 })
+        .solve_pair(&d, &options)
+        .expect("it runs");
     assert_eq!(stopped.statistics.status, Status::IterationLimit);
     assert!(certify_pair(&d, stopped, TOLERANCE).is_err());
 }

@@ -7,9 +7,11 @@ mod program;
 mod scaling;
 mod truth;
 
-use membrane_contact::discretization::PairDiscretization;
+use membrane_contact::action::PairSolution;
+use membrane_contact::discretization::{Discretization, PairDiscretization};
+use membrane_contact::estimate::ErrorBound;
 use membrane_contact::solver::{ActiveSet, ContactSolver, SolverOptions};
-use membrane_contact::study::{Bounded, Tolerance, solve_bounded};
+use membrane_contact::study::{Tolerance, solve_bounded};
 
 use crate::common::{TOLERANCE, distance, largest, solvers};
 use problems::{Hostile, refused, solvable};
@@ -21,6 +23,13 @@ const AGREED: f64 = 1e-6;
 /// A message that is longer than this is no message.
 const LONGEST_MESSAGE: usize = 300;
 
+/// A certified solution and how far it is from the exact one.
+struct Bounded {
+    solution: PairSolution,
+    bound: ErrorBound,
+    tolerance: f64,
+}
+
 impl Hostile {
     fn discretize(&self) -> PairDiscretization {
         PairDiscretization::new(&self.problem, self.mesh.clone())
@@ -30,8 +39,14 @@ impl Hostile {
     fn solve(&self, d: &PairDiscretization, solver: &mut dyn ContactSolver) -> Result<Bounded, String> {
         let name = format!("{}, {}", self.name, solver.name());
         let options = SolverOptions::default();
-        solve_bounded(&self.problem, None, d, solver, &options, Tolerance::Fixed(TOLERANCE))
-            .map_err(|error| format!("{name}: {error}"))
+        let d = Discretization::Pair(d.clone());
+        let found = solve_bounded(&self.problem, None, &d, solver, &options, Tolerance::Fixed(TOLERANCE))
+            .map_err(|error| format!("{name}: {error}"))?;
+        Ok(Bounded {
+            solution: found.solution.as_pair().expect("it is the solution of a pair").clone(),
+            bound: found.bound.map_err(|reason| format!("{name}: {reason}"))?,
+            tolerance: found.tolerance,
+        })
     }
 }
 

@@ -105,7 +105,7 @@ fn is_seen(property: Property) {
 fn solve_by(solver: &mut dyn ContactSolver, d: &PairDiscretization) -> Result<PairSolution, String> {
     let options = SolverOptions { tolerance: TOLERANCE, ..SolverOptions::default() };
     let name = solver.name().to_owned();
-    let candidate = solver.solve(d, &options).map_err(|error| format!("{name}: {error}"))?;
+    let candidate = solver.solve_pair(d, &options).map_err(|error| format!("{name}: {error}"))?;
     certify_pair(d, candidate, TOLERANCE).map_err(|rejected| rejected.to_string())
 }
 

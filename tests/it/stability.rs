@@ -65,7 +65,7 @@ fn constant(cells: usize, scale: impl Fn(usize) -> f64) -> f64 {
     let ratios = (0..20).map(|_| {
         let data = Data::draw(&mut random);
         let d = PairDiscretization::new(&data.problem(), mesh.clone()).unwrap();
-        let candidate = ActiveSet.solve(&d, &SolverOptions::default()).expect("it runs");
+        let candidate = ActiveSet.solve_pair(&d, &SolverOptions::default()).expect("it runs");
         let solution = certify_pair(&d, candidate, TOLERANCE).expect("certified");
         scale(cells) * solution_norm(&d, &solution) / data.norm()
     });

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::solution::{A_SOLUTION, left_out_line, write_solution};
-use crate::action::PairSolution;
+use crate::action::ContactSolution;
 use crate::cli::args::AdaptArguments;
 use crate::cli::case::{CaseFile, SolverName};
 use crate::cli::failure::Failure;
@@ -18,7 +18,7 @@ use crate::cli::run::levels::{GOES_ON, KEPT, Levels, MEMORY, TIME, failure, sett
 use crate::cli::run::memory::Memory;
 use crate::cli::run::pictures::Pictures;
 use crate::cli::run::progress::Progress;
-use crate::cli::run::setup::{Setup, options, solver, too_early, unused_groups};
+use crate::cli::run::setup::{Setup, check_solver, options, solver, too_early, unused_groups};
 use crate::cli::run::watch::Watch;
 use crate::cli::terminal::{note, print, wrapped};
 use crate::estimate::LoadWarning;
@@ -64,7 +64,8 @@ pub(crate) fn run(arguments: &AdaptArguments, watch: &Watch) -> Result<(), Failu
     if let Some(name) = arguments.backend {
         setup.case.solver.name = name;
     }
-    setup.require_pair()?;
+    check_solver(setup.case.solver.name, &setup.case.problem)
+        .map_err(|error| Failure::Input(format!("{}: {error}", setup.name)))?;
     setup.check_memory(setup.case.solver.name)?;
     check_first_mesh(&setup, arguments.max_vertices)?;
     // Nobody may find a folder of which the run says that nothing was written.
@@ -250,11 +251,11 @@ fn write_results(
     };
     let mesh = study.mesh();
     let mut results = folder.results(Part::Solution);
-    let mut left_out = write_solution(&mut results, &case.title, d, solution, bound, pictures)?;
+    let mut left_out = write_solution(&mut results, case, (d, solution), Some(bound), pictures)?;
     left_out.extend(write_mesh(&mut results, &case.title, mesh, solution, pictures)?);
     left_out.extend(write_history(&mut results, &case.title, levels, pictures)?);
     let seconds = Seconds { bound: last.bound_seconds, ..Seconds::default() };
-    let mut summary = Summary::new(&case.title, d, last.tolerance, Ok(solution), seconds, Some(bound))
+    let mut summary = Summary::new(&case.title, d, last.tolerance, Ok(solution), seconds, Some(Ok(bound)))
         .with_unused_groups(&setup.groups);
     summary.left_out.clone_from(&left_out);
     results.write(SUMMARY, |out| summary.write(out))?;
@@ -267,10 +268,15 @@ fn write_mesh(
     results: &mut Results,
     title: &str,
     mesh: &Arc<Mesh>,
-    solution: &PairSolution,
+    solution: &ContactSolution,
     pictures: &Pictures,
 ) -> Result<Vec<&'static str>, Failure> {
-    let (title, mesh, contact) = (title.to_owned(), Arc::clone(mesh), solution.contact().to_vec());
+    // A vertex of several gaps touches where one of them is closed.
+    let mut contact = vec![false; mesh.points().len()];
+    for gap in solution.gaps() {
+        contact.iter_mut().zip(gap.contact).for_each(|(any, touches)| *any |= touches);
+    }
+    let (title, mesh) = (title.to_owned(), Arc::clone(mesh));
     let draw = move || {
         let sub = SubTriangulation::new(&mesh).map_err(|error| error.to_string())?;
         let dual = DualMesh::new(&mesh, &sub);
@@ -298,7 +304,7 @@ fn write_history(
                 Series { name: "true error", values: &values(&levels, |level| level.energy_error) },
                 Series {
                     name: "residual estimator",
-                    values: &values(&levels, |l| Some(l.residual_estimator)),
+                    values: &values(&levels, |level| level.residual_estimator),
                 },
             ],
             slopes: &OPTIMAL,

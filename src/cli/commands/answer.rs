@@ -3,7 +3,7 @@
 use std::io::{self, BufReader};
 use std::path::Path;
 
-use crate::action::{PairSolution, Rejected, Residuals, StackSolution, certify_pair, certify_stack};
+use crate::action::{ContactSolution, Rejected, Residuals, certify};
 use crate::cli::args::CheckArguments;
 use crate::cli::failure::Failure;
 use crate::cli::run::files::{Part, SUMMARY};
@@ -11,75 +11,48 @@ use crate::cli::run::folder::{Claim, Folder};
 use crate::cli::run::input::{self, Input};
 use crate::cli::run::setup::Setup;
 use crate::cli::run::watch::Watch;
-use crate::discretization::{PairDiscretization, StackDiscretization};
+use crate::discretization::Discretization;
 use crate::output::{Seconds, Summary};
 use crate::qp::{
-    Answer, BackendError, QpBackend, QpOptions, QpProblem, QpSolution, Status, contact_qp, read_answer,
-    stack_qp,
+    Answer, BackendError, QpBackend, QpOptions, QpProblem, QpSolution, Status, qp_of, read_answer,
 };
-use crate::solver::{
-    Candidate, ContactSolver, QpSolver, SolverOptions, StackCandidate, StackSolver, Statistics,
-};
+use crate::solver::{Candidate, ContactSolver, QpSolver, SolverOptions, Statistics};
 
 /// What stands for the backend, whose name nobody has told us.
 pub(super) const NAME: &str = "answer";
 
 /// An answer from elsewhere, certified or not.
-pub(super) struct Verdict<S> {
-    pub(super) result: Result<S, Box<Rejected>>,
+pub(super) struct Verdict {
+    pub(super) result: Result<ContactSolution, Box<Rejected>>,
     /// What would help one that is not.
     pub(super) remedy: &'static str,
 }
 
 /// Reads an answer and has it certified; the verdict goes also into a folder, if one is named.
-pub(super) fn judge_pair(
+pub(super) fn judge(
     setup: &Setup,
-    d: &PairDiscretization,
+    d: &Discretization,
     file: &Path,
     arguments: &CheckArguments,
     seconds: Seconds,
     watch: &Watch,
-) -> Result<Verdict<PairSolution>, Failure> {
-    let n = d.interior().len();
-    let answer = read(setup, file, [2 * n, n])?;
+) -> Result<Verdict, Failure> {
+    let answer = read(setup, file, [d.unknowns(), d.rows()])?;
     let tolerance = setup.case.solver.tolerance.or_default();
     let certified =
-        |answer: &Answer| certify_pair(d, Candidate::from_answer(d, answer.clone(), statistics()), tolerance);
+        |answer: &Answer| certify(d, Candidate::from_answer(d, answer.clone(), statistics()), tolerance);
     let is_right_polished = |answer: &Answer| {
         let options = SolverOptions { tolerance, ..SolverOptions::default() };
-        let candidate = QpSolver::new(Given::new(&contact_qp(d), answer)).solve(d, &options);
-        candidate.is_ok_and(|c| !is_repaired(&c.statistics) && certify_pair(d, c, tolerance).is_ok())
+        let candidate = QpSolver::new(Given::new(&qp_of(d), answer)).solve(d, &options);
+        candidate.is_ok_and(|c| !is_repaired(&c.statistics) && certify(d, c, tolerance).is_ok())
     };
     let result = certified(&answer);
     let remedy = if result.is_ok() { "" } else { remedy(&answer, &certified, &is_right_polished) };
-    let summary = |result| Summary::new(&setup.case.title, d, tolerance, result, seconds, None);
-    write(setup, arguments, watch, || summary(result.as_ref().map_err(|rejected| rejected.as_ref())))?;
-    Ok(Verdict { result, remedy })
-}
-
-/// Likewise of another stack.
-pub(super) fn judge_stack(
-    setup: &Setup,
-    d: &StackDiscretization,
-    file: &Path,
-    arguments: &CheckArguments,
-    seconds: Seconds,
-    watch: &Watch,
-) -> Result<Verdict<StackSolution>, Failure> {
-    let answer = read(setup, file, [d.unknowns(), d.rows().len()])?;
-    let tolerance = setup.case.solver.tolerance.or_default();
-    let certified = |answer: &Answer| {
-        certify_stack(d, StackCandidate::from_answer(d, answer.clone(), statistics()), tolerance)
+    let summary = || {
+        let result = result.as_ref().map_err(|rejected| rejected.as_ref());
+        Summary::new(&setup.case.title, d, tolerance, result, seconds, None)
     };
-    let is_right_polished = |answer: &Answer| {
-        let options = SolverOptions { tolerance, ..SolverOptions::default() };
-        let candidate = QpSolver::new(Given::new(&stack_qp(d), answer)).solve_stack(d, &options);
-        candidate.is_ok_and(|c| !is_repaired(&c.statistics) && certify_stack(d, c, tolerance).is_ok())
-    };
-    let result = certified(&answer);
-    let remedy = if result.is_ok() { "" } else { remedy(&answer, &certified, &is_right_polished) };
-    let summary = |result| Summary::of_stack(&setup.case.title, d, tolerance, result, seconds);
-    write(setup, arguments, watch, || summary(result.as_ref().map_err(|rejected| rejected.as_ref())))?;
+    write(setup, arguments, watch, summary)?;
     Ok(Verdict { result, remedy })
 }
 
@@ -125,9 +98,9 @@ fn is_repaired(statistics: &Statistics) -> bool {
 }
 
 /// What would make an answer certify: the multipliers with the other sign, the polish, both; else accuracy.
-fn remedy<S>(
+fn remedy(
     answer: &Answer,
-    certified: &dyn Fn(&Answer) -> Result<S, Box<Rejected>>,
+    certified: &dyn Fn(&Answer) -> Result<ContactSolution, Box<Rejected>>,
     is_right_polished: &dyn Fn(&Answer) -> bool,
 ) -> &'static str {
     let negative = Answer { y: answer.y.iter().map(|y| -y).collect(), ..answer.clone() };

@@ -1,22 +1,19 @@
 //! `membranes check`: every residual, all solvers, side by side, or of an answer from elsewhere.
 
 use super::answer::{self, Verdict};
-use crate::action::{
-    GapSolution, PairSolution, Rejected, Residuals, StackSolution, certify_pair, certify_stack,
-};
+use crate::action::{ContactSolution, PairSolution, Rejected, Residuals, certify};
 use crate::cli::args::CheckArguments;
 use crate::cli::case::{CaseFile, SolverName, SolverSettings};
 use crate::cli::failure::Failure;
 use crate::cli::run::progress::Progress;
-use crate::cli::run::setup::{Setup, options, solver, stack_solver, unused_groups};
+use crate::cli::run::setup::{Setup, check_solver, options, solver, unused_groups};
 use crate::cli::run::watch::Watch;
 use crate::cli::terminal::{fixed, print, wrapped};
-use crate::discretization::PairDiscretization;
+use crate::discretization::{Discretization, PairDiscretization};
 use crate::fem::element_loads;
 use crate::flux::{FluxDefects, Reconstruction, Reconstructor};
 use crate::mesh::SubTriangulation;
 use crate::problem::ContactProblem;
-use crate::solver::SolverError;
 use crate::study::Tolerance;
 use crate::text::grouped;
 
@@ -24,57 +21,11 @@ use crate::text::grouped;
 const AS_IT_IS: &str = "as it is";
 
 /// One solver's result.
-struct Column<S> {
+struct Column {
     heading: [String; 2],
     /// The answer as the solver left it is shown for comparison only.
     must_certify: bool,
-    result: Result<S, Box<Rejected>>,
-}
-
-/// What is shown of a certified solution.
-trait Shown {
-    fn residuals(&self) -> &Residuals;
-    fn energy(&self) -> f64;
-    /// Vertices in contact, in all gaps.
-    fn contact_vertices(&self) -> usize;
-    /// In all gaps.
-    fn total_force(&self) -> f64;
-}
-
-impl Shown for PairSolution {
-    fn residuals(&self) -> &Residuals {
-        self.residuals()
-    }
-
-    fn energy(&self) -> f64 {
-        self.energy()
-    }
-
-    fn contact_vertices(&self) -> usize {
-        self.contact().iter().filter(|&&contact| contact).count()
-    }
-
-    fn total_force(&self) -> f64 {
-        self.total_force()
-    }
-}
-
-impl Shown for StackSolution {
-    fn residuals(&self) -> &Residuals {
-        self.residuals()
-    }
-
-    fn energy(&self) -> f64 {
-        self.energy()
-    }
-
-    fn contact_vertices(&self) -> usize {
-        self.gaps().iter().map(GapSolution::contact_vertices).sum()
-    }
-
-    fn total_force(&self) -> f64 {
-        self.gaps().iter().map(|gap| gap.total_force).sum()
-    }
+    result: Result<ContactSolution, Box<Rejected>>,
 }
 
 pub(crate) fn run(arguments: &CheckArguments, watch: &Watch) -> Result<(), Failure> {
@@ -83,87 +34,41 @@ pub(crate) fn run(arguments: &CheckArguments, watch: &Watch) -> Result<(), Failu
     if let Some(tolerance) = arguments.tolerance {
         setup.case.solver.tolerance = Tolerance::Fixed(tolerance);
     }
-    let is_pair = setup.case.pair().is_some();
     if arguments.answer.is_none() {
         for name in solvers(&setup.case) {
             setup.check_memory(name)?;
         }
     }
-    if is_pair {
-        check_pair(&setup, arguments, watch, progress)
-    } else {
-        check_stack(&setup, arguments, watch, progress)
-    }
-}
-
-fn check_pair(
-    setup: &Setup,
-    arguments: &CheckArguments,
-    watch: &Watch,
-    progress: Progress,
-) -> Result<(), Failure> {
     let (d, seconds) = setup.discretize(&progress)?;
     let (columns, remedy) = match &arguments.answer {
-        None => {
-            let tolerance = setup.case.solver.tolerance.or_default();
-            let solved = |settings: &SolverSettings| {
-                let candidate = solver(settings.name).solve(&d, &options(settings))?;
-                Ok(certify_pair(&d, candidate, tolerance))
-            };
-            (columns_of_solvers(setup, &solved, &progress)?, "")
-        }
+        None => (columns_of_solvers(&setup, &d, &progress)?, ""),
         Some(file) => {
             progress.stage("judging the answer");
-            let answered = answer::judge_pair(setup, &d, file, arguments, seconds, watch)?;
-            column_of_answer(answered)
+            column_of_answer(answer::judge(&setup, &d, file, arguments, seconds, watch)?)
         }
     };
-    let fluxes = match columns.iter().find_map(|column| column.result.as_ref().ok()) {
-        Some(solution) if !arguments.case.quiet => flux_lines(&setup.case.problem, &d, solution)
+    let certified = columns.iter().find_map(|column| column.result.as_ref().ok());
+    let of_pair = d.as_pair().zip(certified.and_then(ContactSolution::as_pair));
+    let fluxes = match of_pair {
+        Some((d, solution)) if !arguments.case.quiet => flux_lines(&setup.case.problem, d, solution)
             .map_err(|error| Failure::Input(format!("{}: {error}", setup.name)))?,
         _ => String::new(),
     };
     drop(progress);
-    report(setup, arguments, 2 * d.interior().len(), &columns, &fluxes, remedy)
+    report(&setup, arguments, d.unknowns(), &columns, &fluxes, remedy)
 }
 
-fn check_stack(
-    setup: &Setup,
-    arguments: &CheckArguments,
-    watch: &Watch,
-    progress: Progress,
-) -> Result<(), Failure> {
-    let (d, seconds) = setup.discretize_stack(&progress)?;
-    let (columns, remedy) = match &arguments.answer {
-        None => {
-            let tolerance = setup.case.solver.tolerance.or_default();
-            let solved = |settings: &SolverSettings| {
-                let mut solver = stack_solver(settings.name, &setup.case.problem)?;
-                Ok(certify_stack(&d, solver.solve_stack(&d, &options(settings))?, tolerance))
-            };
-            (columns_of_solvers(setup, &solved, &progress)?, "")
-        }
-        Some(file) => {
-            progress.stage("judging the answer");
-            let answered = answer::judge_stack(setup, &d, file, arguments, seconds, watch)?;
-            column_of_answer(answered)
-        }
-    };
-    drop(progress);
-    report(setup, arguments, d.unknowns(), &columns, "", remedy)
-}
-
-fn column_of_answer<S>(Verdict { result, remedy }: Verdict<S>) -> (Vec<Column<S>>, &'static str) {
+fn column_of_answer(Verdict { result, remedy }: Verdict) -> (Vec<Column>, &'static str) {
     let heading = [answer::NAME.into(), AS_IT_IS.into()];
     (vec![Column { heading, must_certify: true, result }], remedy)
 }
 
 /// Prints the table; an error when a result that has to certify does not.
-fn report<S: Shown>(
+fn report(
     setup: &Setup,
     arguments: &CheckArguments,
     unknowns: usize,
-    columns: &[Column<S>],
+    columns: &[Column],
     fluxes: &str,
     remedy: &str,
 ) -> Result<(), Failure> {
@@ -188,34 +93,31 @@ fn solvers(case: &CaseFile) -> impl Iterator<Item = SolverName> {
     SolverName::ALL
         .into_iter()
         .filter(|solver| solver.is_built() && *solver != SolverName::Auto)
-        .filter(|solver| case.pair().is_some() || stack_solver(*solver, &case.problem).is_ok())
+        .filter(|solver| check_solver(*solver, &case.problem).is_ok())
 }
 
-/// What a solver with these settings finds.
-type Solved<'s, S> = dyn Fn(&SolverSettings) -> Result<Result<S, Box<Rejected>>, SolverError> + 's;
-
-fn columns_of_solvers<S>(
+fn columns_of_solvers(
     setup: &Setup,
-    solved: &Solved<S>,
+    d: &Discretization,
     progress: &Progress,
-) -> Result<Vec<Column<S>>, Failure> {
+) -> Result<Vec<Column>, Failure> {
     let mut columns = Vec::new();
     for name in solvers(&setup.case) {
         let ways = if name.is_polished() { [true, false].as_slice() } else { &[true] };
         for &polish in ways {
             let settings = SolverSettings { name, polish, ..setup.case.solver.clone() };
-            columns.push(column(&setup.name, &settings, solved, progress)?);
+            columns.push(column(&setup.name, d, &settings, progress)?);
         }
     }
     Ok(columns)
 }
 
-fn column<S>(
+fn column(
     case: &str,
+    d: &Discretization,
     settings: &SolverSettings,
-    solved: &Solved<S>,
     progress: &Progress,
-) -> Result<Column<S>, Failure> {
+) -> Result<Column, Failure> {
     let name = settings.name;
     let way = match (name.is_polished(), settings.polish) {
         (false, _) => "",
@@ -223,7 +125,10 @@ fn column<S>(
         (true, false) => AS_IT_IS,
     };
     progress.stage(format!("{} {way}", name.as_str()));
-    let result = solved(settings).map_err(|error| Failure::NotCertified(format!("{case}: {error}")))?;
+    let candidate = solver(name)
+        .solve(d, &options(settings))
+        .map_err(|error| Failure::NotCertified(format!("{case}: {error}")))?;
+    let result = certify(d, candidate, settings.tolerance.or_default());
     Ok(Column { heading: heading(name, way), must_certify: settings.polish, result })
 }
 
@@ -269,7 +174,7 @@ fn shortened(name: &str) -> &str {
 }
 
 /// A row for each residual, a column for each result.
-fn table<S: Shown>(columns: &[Column<S>]) -> String {
+fn table(columns: &[Column]) -> String {
     let residuals: Vec<Option<&Residuals>> = columns
         .iter()
         .map(|column| match &column.result {
@@ -282,7 +187,7 @@ fn table<S: Shown>(columns: &[Column<S>]) -> String {
         format!("  {:17}{cells}\n", shortened(name))
     };
     let heading = |line: usize| row("", &|k| columns[k].heading[line].clone());
-    let solved = |k: usize, value: &dyn Fn(&S) -> String| {
+    let solved = |k: usize, value: &dyn Fn(&ContactSolution) -> String| {
         columns[k].result.as_ref().map_or_else(|_| "-".into(), value)
     };
     let mut text = heading(0) + &heading(1);
@@ -293,6 +198,11 @@ fn table<S: Shown>(columns: &[Column<S>]) -> String {
     text += &row("(overlap)", &|k| residuals[k].map_or("-".into(), |r| format!("{:.1e}", r.overlap)));
     text += &row("certified", &|k| if columns[k].result.is_ok() { "yes".into() } else { "no".into() });
     text += &row("energy", &|k| solved(k, &|s| fixed(s.energy(), 6)));
-    text += &row("contact vertices", &|k| solved(k, &|s| grouped(s.contact_vertices())));
+    text += &row("contact vertices", &|k| solved(k, &|s| grouped(contact_vertices(s))));
     text + &row("total force", &|k| solved(k, &|s| fixed(s.total_force(), 6)))
+}
+
+/// In all gaps.
+fn contact_vertices(solution: &ContactSolution) -> usize {
+    solution.gaps().iter().map(|gap| gap.contact.iter().filter(|&&contact| contact).count()).sum()
 }

@@ -8,16 +8,14 @@ use crate::cli::run::progress::Progress;
 use crate::cli::run::setup::{Setup, unused_groups};
 use crate::cli::run::watch::Watch;
 use crate::cli::terminal::print;
-use crate::discretization::{PairDiscretization, StackDiscretization};
-use crate::qp::{
-    QpPart, QpProblem, contact_qp, stack_qp, write_matrix_market, write_npz, write_qps, write_stack_npz,
-};
+use crate::discretization::Discretization;
+use crate::qp::{QpPart, qp_of, write_matrix_market, write_npz, write_qps, write_stack_npz};
 
 pub(crate) fn run(arguments: &ExportArguments, watch: &Watch) -> Result<(), Failure> {
     let progress = Progress::new(arguments.case.quiet);
     let setup = Setup::new(&arguments.case, &progress)?;
-    let problem = Posed::new(&setup, &progress)?;
-    let qp = problem.qp();
+    let (d, _) = setup.discretize(&progress)?;
+    let qp = qp_of(&d);
     let claim = Claim {
         case: &setup.id,
         part: Part::Export,
@@ -34,9 +32,9 @@ pub(crate) fn run(arguments: &ExportArguments, watch: &Watch) -> Result<(), Fail
     };
     match arguments.format {
         Format::Qps => folder.write(named(QPS), |out| write_qps(&qp, out))?,
-        Format::Npz => folder.write(named(NPZ), |out| match &problem {
-            Posed::Pair(d) => write_npz(d, &qp, out),
-            Posed::Stack(d) => write_stack_npz(d, &qp, out),
+        Format::Npz => folder.write(named(NPZ), |out| match &d {
+            Discretization::Pair(d) => write_npz(d, &qp, out),
+            Discretization::Stack(d) => write_stack_npz(d, &qp, out),
         })?,
         Format::Mtx => {
             for (part, name) in QpPart::ALL.into_iter().zip(MTX) {
@@ -49,26 +47,4 @@ pub(crate) fn run(arguments: &ExportArguments, watch: &Watch) -> Result<(), Fail
         print(&(written.join("\n") + "\n" + &unused_groups(&setup.groups)))?;
     }
     Ok(())
-}
-
-/// The paper's pair, or another stack, on its mesh.
-enum Posed {
-    Pair(Box<PairDiscretization>),
-    Stack(Box<StackDiscretization>),
-}
-
-impl Posed {
-    fn new(setup: &Setup, progress: &Progress) -> Result<Self, Failure> {
-        Ok(match setup.case.pair() {
-            Some(_) => Self::Pair(Box::new(setup.discretize(progress)?.0)),
-            None => Self::Stack(Box::new(setup.discretize_stack(progress)?.0)),
-        })
-    }
-
-    fn qp(&self) -> QpProblem {
-        match self {
-            Self::Pair(d) => contact_qp(d),
-            Self::Stack(d) => stack_qp(d),
-        }
-    }
 }

@@ -2,15 +2,17 @@
 
 use std::sync::Arc;
 
-use crate::action::PairSolution;
+use crate::action::ContactSolution;
+use crate::cli::case::{CaseFile, MeshSource};
 use crate::cli::failure::Failure;
 use crate::cli::run::files::{MEMBRANES, SOLUTION};
 use crate::cli::run::folder::Results;
 use crate::cli::run::pictures::Pictures;
-use crate::discretization::PairDiscretization;
+use crate::discretization::Discretization;
 use crate::estimate::ErrorBound;
-use crate::output::write_vtu;
-use crate::pictures::membranes::{Picture, render};
+use crate::output::{write_stack_vtu, write_vtu};
+use crate::pictures::membranes::{self, Picture};
+use crate::pictures::stack::{self, StackPicture};
 
 /// The settings of a folder that holds one. Another mesh, solver, or tolerance for the same case takes the place of the one before.
 pub(super) const A_SOLUTION: &str = "a solution";
@@ -18,17 +20,32 @@ pub(super) const A_SOLUTION: &str = "a solution";
 /// Writes `solution.vtu`, and the picture of the membranes if there is time. What was left out is returned.
 pub(super) fn write_solution(
     results: &mut Results,
-    title: &str,
-    d: &PairDiscretization,
-    solution: &PairSolution,
-    bound: &ErrorBound,
+    case: &CaseFile,
+    (d, solution): (&Arc<Discretization>, &ContactSolution),
+    bound: Option<&ErrorBound>,
     pictures: &Pictures,
 ) -> Result<Vec<&'static str>, Failure> {
-    results.write(SOLUTION, |out| write_vtu(d.mesh(), solution, bound, out))?;
-    let (title, mesh, solution) = (title.to_owned(), Arc::clone(d.mesh()), solution.clone());
-    let draw = move || {
-        let picture = Picture::of(&title, &mesh, &solution);
-        render(&picture).map_err(|error| error.to_string())
+    // The names of a mesh file are its author's; those of generators are known.
+    let groups = matches!(case.mesh, MeshSource::File(_));
+    match (&**d, solution) {
+        (Discretization::Stack(d), ContactSolution::Stack(solution)) => {
+            results.write(SOLUTION, |out| write_stack_vtu(d, solution, bound, groups, out))?;
+        }
+        (d, ContactSolution::Pair(solution)) => {
+            let bound = bound.expect("a pair has a bound");
+            results.write(SOLUTION, |out| write_vtu(d.mesh(), solution, bound, out))?;
+        }
+        _ => unreachable!("the solution is one of its discretization"),
+    }
+    let (title, d, solution) = (case.title.clone(), Arc::clone(d), solution.clone());
+    let draw = move || match (&*d, &solution) {
+        (Discretization::Stack(d), ContactSolution::Stack(solution)) => {
+            stack::render(&StackPicture::of(&title, d, solution)).map_err(|error| error.to_string())
+        }
+        (d, ContactSolution::Pair(solution)) => {
+            membranes::render(&Picture::of(&title, d.mesh(), solution)).map_err(|error| error.to_string())
+        }
+        _ => unreachable!("the solution is one of its discretization"),
     };
     pictures.write(MEMBRANES, draw, |file, bytes| results.write(file, |out| out.write_all(bytes)))
 }

@@ -2,16 +2,14 @@
 
 mod folder;
 mod report;
-mod stack;
 
-use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
 use folder::{claim, reject, too_late};
-use report::{certified_line, mesh_line, polish_line, solver_line};
+use report::table;
 
-use super::solution::{left_out_line, write_solution};
+use super::solution::write_solution;
 use crate::action::{PairSolution, Rejected};
 use crate::cli::args::SolveArguments;
 use crate::cli::case::CaseFile;
@@ -21,16 +19,15 @@ use crate::cli::run::files::{DUAL, FLUX, MEMBRANES, MESH, Part, SOLUTION, SUMMAR
 use crate::cli::run::folder::{Folder, Results};
 use crate::cli::run::pictures::Pictures;
 use crate::cli::run::progress::Progress;
-use crate::cli::run::setup::{Setup, options, solver, too_early, unused_groups};
+use crate::cli::run::setup::{Setup, check_solver, options, solver, too_early, unused_groups};
 use crate::cli::run::watch::Watch;
-use crate::cli::terminal::{fields, fixed, print, wrapped};
-use crate::discretization::PairDiscretization;
+use crate::cli::terminal::print;
+use crate::discretization::{Discretization, PairDiscretization};
 use crate::fem::element_loads;
 use crate::flux::{Reconstruction, Reconstructor};
 use crate::mesh::{DualMesh, SubTriangulation};
 use crate::output::{Seconds, Summary, write_dual_vtu, write_flux_vtu};
 use crate::pictures::{MeshPicture, render_mesh};
-use crate::solver::PolishReport;
 use crate::study::{AccuracyError, Bounded, solve_bounded};
 use crate::text::grouped;
 
@@ -42,12 +39,15 @@ pub(crate) fn run(arguments: &SolveArguments, watch: &Watch) -> Result<(), Failu
     let mut setup = Setup::new(&arguments.case, &progress)?;
     override_settings(&mut setup, arguments, &clock);
     setup.check_memory(setup.case.solver.name)?;
-    if setup.case.pair().is_none() {
-        return stack::run(&setup, arguments, (&clock, watch, &pictures), progress);
+    check_solver(setup.case.solver.name, &setup.case.problem)
+        .map_err(|error| Failure::Input(format!("{}: {error}", setup.name)))?;
+    if arguments.dual && setup.case.pair().is_none() {
+        return Err(Failure::Input(format!("{}: --dual is for a pair so far: leave it out", setup.name)));
     }
     let (d, seconds) = setup.discretize(&progress)?;
     let folder = claim(&setup, arguments, &clock, watch)?;
 
+    let d = Arc::new(d);
     let result = solve(&setup, &d, seconds, &clock, (&folder, watch), &progress);
     watch.lift();
     match result {
@@ -57,7 +57,7 @@ pub(crate) fn run(arguments: &SolveArguments, watch: &Watch) -> Result<(), Failu
                 write_results(&setup, &d, &bounded, seconds, (&folder, &clock, &pictures), arguments.dual)?;
             drop(progress);
             if !arguments.case.quiet {
-                let unloaded = d.load().iter().flatten().all(|&load| load == 0.0);
+                let unloaded = (1..=d.membranes()).all(|i| d.load(i).iter().all(|&load| load == 0.0));
                 let polish = bounded.solution.statistics().polish;
                 let files = files(&pictures, arguments.dual);
                 let table = table(&summary, polish, unloaded, folder.path(), files);
@@ -77,14 +77,14 @@ pub(crate) fn run(arguments: &SolveArguments, watch: &Watch) -> Result<(), Failu
 /// Solves, and bounds the error, in the time that there is.
 fn solve(
     setup: &Setup,
-    d: &PairDiscretization,
+    d: &Discretization,
     seconds: Seconds,
     clock: &Clock,
     (folder, watch): (&Folder, &Watch),
     progress: &Progress,
 ) -> Result<Bounded, AccuracyError> {
     let settings = &setup.case.solver;
-    let unknowns = grouped(2 * d.interior().len());
+    let unknowns = grouped(d.unknowns());
     progress.stage(format!("{} solves for {unknowns} unknowns", settings.name.as_str()));
     let summary = |rejected: &Rejected| {
         let tolerance = settings.tolerance.or_default();
@@ -101,7 +101,7 @@ fn solve(
 /// Writes what is certified: the solution in any case, the rest if there is time.
 fn write_results(
     setup: &Setup,
-    d: &PairDiscretization,
+    d: &Arc<Discretization>,
     bounded: &Bounded,
     seconds: Seconds,
     (folder, clock, pictures): (&Folder, &Clock, &Pictures),
@@ -112,13 +112,14 @@ fn write_results(
     let Bounded { solution, bound, tolerance, bound_seconds } = bounded;
     let mut results = folder.results(Part::Solution);
     let mut left_out = Vec::new();
-    if dual {
+    if let (true, Some(d), Some(solution)) = (dual, d.as_pair(), solution.as_pair()) {
         left_out.extend(write_dual(&mut results, &setup.case, d, solution, (clock, pictures))?);
     }
-    left_out.extend(write_solution(&mut results, title, d, solution, bound, pictures)?);
+    let of_bound = bound.as_ref().ok();
+    left_out.extend(write_solution(&mut results, &setup.case, (d, solution), of_bound, pictures)?);
     let output = start.elapsed().as_secs_f64();
     let seconds = Seconds { bound: *bound_seconds, output, ..seconds };
-    let mut summary = Summary::new(title, d, *tolerance, Ok(solution), seconds, Some(bound))
+    let mut summary = Summary::new(title, d, *tolerance, Ok(solution), seconds, Some(bound.as_ref()))
         .with_unused_groups(&setup.groups);
     summary.left_out = left_out;
     results.write(SUMMARY, |out| summary.write(out))?;
@@ -184,76 +185,4 @@ fn files(pictures: &Pictures, dual: bool) -> Vec<&'static str> {
         files.extend(pictures.files(MESH));
     }
     files
-}
-
-/// The summary for the eye.
-fn table(
-    summary: &Summary,
-    polish: Option<PolishReport>,
-    unloaded: bool,
-    folder: &Path,
-    mut files: Vec<&str>,
-) -> String {
-    let number = |value: Option<f64>| value.map_or_else(String::new, |value| fixed(value, 8));
-    let interior = summary.unknowns / 2;
-    let contact = summary.contact_vertices.unwrap_or(0);
-    let seconds = &summary.seconds;
-    files.retain(|name| !summary.left_out.contains(name));
-    let files = files.join(", ");
-    let rows = [
-        ("mesh", mesh_line(summary)),
-        ("solver", solver_line(summary)),
-        ("chosen", summary.choice.clone().unwrap_or_default()),
-        ("polish", polish.map_or_else(String::new, polish_line)),
-        ("certified", certified_line(summary)),
-        ("error", error_line(summary, unloaded)),
-        ("guaranteed", guarantee(summary)),
-        ("warning", summary.warnings.join("\n")),
-        ("energy", number(summary.energy)),
-        (
-            "contact",
-            format!(
-                "{} of {} interior vertices, area {}",
-                grouped(contact),
-                grouped(interior),
-                fixed(summary.contact_area_extended.unwrap_or(0.0), 6)
-            ),
-        ),
-        ("total force", number(summary.total_force_extended)),
-        (
-            "seconds",
-            format!(
-                "mesh {:.2}, assembly {:.2}, solve {:.2}, bound {:.2}, output {:.2}",
-                seconds.mesh,
-                seconds.assembly,
-                seconds.setup + seconds.solve,
-                seconds.bound,
-                seconds.output
-            ),
-        ),
-        ("left out", left_out_line(&summary.left_out)),
-        ("files", format!("{}/{{{files}}}", folder.display())),
-    ];
-    format!("{}\n{}", wrapped(&summary.title, 2), fields(&rows))
-}
-
-/// What the bound rests on.
-fn guarantee(summary: &Summary) -> String {
-    let text = match summary.error_bound {
-        None => "",
-        Some(_) if summary.warnings.is_empty() => "up to the quadrature of the loads",
-        Some(_) => "if the loads are as the quadrature sees them",
-    };
-    text.into()
-}
-
-/// Where nothing is loaded, membranes at rest have no energy to compare the bound with.
-fn error_line(summary: &Summary, unloaded: bool) -> String {
-    let Some(bound) = summary.error_bound else { return String::new() };
-    let relative = match summary.relative_error_bound {
-        Some(relative) => format!("{:.2} %", 100.0 * relative),
-        None if unloaded => "no load: rounding".into(),
-        None => "no relative bound: refine".into(),
-    };
-    format!("at most {bound:.3e} in the energy norm ({relative})")
 }

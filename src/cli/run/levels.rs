@@ -79,15 +79,16 @@ pub(crate) fn settings(setup: &Setup) -> String {
 /// `node_tags` are Gmsh's numbers of the vertices.
 pub(crate) fn failure(name: &str, error: &StudyError, node_tags: &[u64]) -> Failure {
     let vertices = match error {
-        StudyError::PairDiscretization(error) => error.vertex().into_iter().collect(),
+        StudyError::Discretization(error) => error.vertex().into_iter().collect(),
         StudyError::Mesh(error) => error.vertices(),
         _ => Vec::new(),
     };
     let text = format!("{name}: {error}{}", gmsh_nodes(&vertices, node_tags));
     match error {
-        StudyError::Rejected { .. } | StudyError::Solver(_) | StudyError::Measure(_) => {
-            Failure::NotCertified(text)
-        }
+        StudyError::Rejected { .. }
+        | StudyError::Solver(_)
+        | StudyError::Measure(_)
+        | StudyError::NoBound(_) => Failure::NotCertified(text),
         _ => Failure::Input(text),
     }
 }

@@ -12,14 +12,14 @@ use crate::cli::args::CaseArguments;
 use crate::cli::case::{CaseFile, CaseId, MeshSource, SolverName, SolverSettings};
 use crate::cli::failure::Failure;
 use crate::cli::terminal::COLUMNS;
-use crate::discretization::{PairDiscretization, StackDiscretization};
+use crate::discretization::Discretization;
 use crate::formats::gmsh::{PhysicalGroup, parse};
 use crate::mesh::{GmshMesh, MAX_VERTICES, MeshFamily, ReadError, estimated_vertices, generate, gmsh_nodes};
 use crate::output::Seconds;
 use crate::problem::ContactProblem;
 #[cfg(any(feature = "clarabel", feature = "osqp"))]
 use crate::solver::QpSolver;
-use crate::solver::{ActiveSet, Auto, ContactSolver, Multigrid, SolverError, SolverOptions, StackSolver};
+use crate::solver::{ActiveSet, Auto, ContactSolver, Multigrid, SolverError, SolverOptions};
 use crate::text::{excerpt, grouped};
 
 /// The case and its meshes.
@@ -81,42 +81,16 @@ impl Setup {
         self.memory.check_stack(&self.name, name, vertices, membranes)
     }
 
-    /// Assembles the discrete problem of the pair, and says how long it took.
-    pub(crate) fn discretize(&self, progress: &Progress) -> Result<(PairDiscretization, Seconds), Failure> {
-        self.require_pair()?;
-        self.assemble(progress, || {
-            PairDiscretization::new(&self.case.problem, self.family.mesh().clone())
-                .map_err(|error| (error.vertex(), error.to_string()))
-        })
-    }
-
-    /// Likewise of any stack.
-    pub(crate) fn discretize_stack(
-        &self,
-        progress: &Progress,
-    ) -> Result<(StackDiscretization, Seconds), Failure> {
-        self.assemble(progress, || {
-            StackDiscretization::by_rule(
-                &self.case.problem,
-                self.family.mesh().clone(),
-                self.case.integration,
-            )
-            .map_err(|error| (error.vertex(), error.to_string()))
-        })
-    }
-
-    /// Assembles; an error comes with the vertex that it names.
-    fn assemble<D>(
-        &self,
-        progress: &Progress,
-        assemble: impl FnOnce() -> Result<D, (Option<usize>, String)>,
-    ) -> Result<(D, Seconds), Failure> {
+    /// Assembles the discrete problem, and says how long it took.
+    pub(crate) fn discretize(&self, progress: &Progress) -> Result<(Discretization, Seconds), Failure> {
         progress.stage(format!("assembling on {} vertices", grouped(self.family.mesh().points().len())));
         let start = Instant::now();
-        let d = assemble().map_err(|(vertex, error)| {
-            let vertices: Vec<usize> = vertex.into_iter().collect();
-            Failure::Input(format!("{}: {error}{}", self.name, gmsh_nodes(&vertices, &self.node_tags)))
-        })?;
+        let mesh = self.family.mesh().clone();
+        let d =
+            Discretization::by_rule(&self.case.problem, mesh, self.case.integration).map_err(|error| {
+                let vertices: Vec<usize> = error.vertex().into_iter().collect();
+                Failure::Input(format!("{}: {error}{}", self.name, gmsh_nodes(&vertices, &self.node_tags)))
+            })?;
         Ok((d, Seconds { assembly: start.elapsed().as_secs_f64(), ..self.seconds }))
     }
 }
@@ -252,12 +226,8 @@ fn cannot_read(case: &str, mesh: &Path, error: &ReadError) -> Failure {
     })
 }
 
-/// A solver of the pair and of other stacks.
-trait AnySolver: ContactSolver + StackSolver {}
-
-impl<S: ContactSolver + StackSolver> AnySolver for S {}
-
-fn any_solver(name: SolverName) -> Box<dyn AnySolver> {
+/// The solver of this name.
+pub(crate) fn solver(name: SolverName) -> Box<dyn ContactSolver> {
     match name {
         SolverName::ActiveSet => Box::new(ActiveSet),
         SolverName::Multigrid => Box::new(Multigrid),
@@ -271,21 +241,14 @@ fn any_solver(name: SolverName) -> Box<dyn AnySolver> {
     }
 }
 
-/// The solver of this name.
-pub(crate) fn solver(name: SolverName) -> Box<dyn ContactSolver> {
-    any_solver(name)
-}
-
-/// The solver of this name for a stack; multigrid does not solve every one.
-pub(crate) fn stack_solver(
-    name: SolverName,
-    problem: &ContactProblem,
-) -> Result<Box<dyn StackSolver>, SolverError> {
-    let obstacles = [problem.ceiling(), problem.floor()].map(|obstacle| obstacle.is_some());
-    if name == SolverName::Multigrid && !Multigrid::solves_stack(problem.membranes().len(), obstacles) {
+/// Multigrid does not solve every stack.
+pub(crate) fn check_solver(name: SolverName, problem: &ContactProblem) -> Result<(), SolverError> {
+    let obstacles = [problem.ceiling(), problem.floor()].iter().flatten().count();
+    let is_obstacle_problem = problem.membranes().len() == 1 && obstacles < 2;
+    if name == SolverName::Multigrid && problem.as_pair().is_none() && !is_obstacle_problem {
         return Err(SolverError::Coupled);
     }
-    Ok(any_solver(name))
+    Ok(())
 }
 
 /// What the settings ask of a solver.
@@ -311,7 +274,7 @@ mod tests {
         let sheet = || Membrane::new(1.0).load(-1.0);
         let floor = ContactProblem::obstacle(sheet(), -1.0).unwrap();
         let two = ContactProblem::stack().membrane(sheet()).membrane(sheet()).floor(-1.0).build().unwrap();
-        let refused = |name, problem| stack_solver(name, problem).err();
+        let refused = |name, problem| check_solver(name, problem).err();
         assert_eq!(refused(SolverName::Multigrid, &floor), None);
         assert_eq!(refused(SolverName::Multigrid, &two), Some(SolverError::Coupled));
         assert_eq!(refused(SolverName::Auto, &two), None);

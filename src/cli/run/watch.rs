@@ -12,12 +12,10 @@ use std::thread;
 use std::time::Instant;
 
 use crate::cli::failure::Failure;
-use crate::discretization::{PairDiscretization, StackDiscretization};
+use crate::discretization::{Discretization, PairDiscretization, StackDiscretization};
 use crate::output::discard_unfinished;
 use crate::qp::TimeLimit;
-use crate::solver::{
-    Candidate, ContactSolver, PreparedSolver, SolverError, SolverOptions, StackCandidate, StackSolver,
-};
+use crate::solver::{Candidate, ContactSolver, PreparedSolver, SolverError, SolverOptions};
 
 /// A solver looks at the clock between its steps. What goes on longer than this fraction of the limit
 /// is not waited for.
@@ -90,15 +88,6 @@ impl Watch {
         Box::new(Watched { solver, watch: self.clone(), give_up: Arc::new(give_up) })
     }
 
-    /// Likewise a solver of stacks.
-    pub(crate) fn over_stack(
-        &self,
-        solver: Box<dyn StackSolver>,
-        give_up: impl Fn() -> Failure + Send + Sync + 'static,
-    ) -> Box<dyn StackSolver> {
-        Box::new(WatchedStack { solver, watch: self.clone(), give_up: Arc::new(give_up) })
-    }
-
     /// What `solve` returns, if it comes back in time.
     fn in_time<T>(&self, limit: Option<TimeLimit>, give_up: &GiveUp, solve: impl FnOnce() -> T) -> T {
         let alarm = limit.and_then(|limit| Alarm::after(limit, Arc::clone(give_up)));
@@ -126,11 +115,25 @@ impl ContactSolver for Watched {
         self.solver.name()
     }
 
-    fn solve(&mut self, d: &PairDiscretization, options: &SolverOptions) -> Result<Candidate, SolverError> {
-        self.prepare(d).solve(options)
+    fn solve_pair(
+        &mut self,
+        d: &PairDiscretization,
+        options: &SolverOptions,
+    ) -> Result<Candidate, SolverError> {
+        let Self { solver, watch, give_up } = self;
+        watch.in_time(options.time_limit, give_up, || solver.solve_pair(d, options))
     }
 
-    fn prepare<'s>(&'s mut self, d: &'s PairDiscretization) -> Box<dyn PreparedSolver + 's> {
+    fn solve_stack(
+        &mut self,
+        d: &StackDiscretization,
+        options: &SolverOptions,
+    ) -> Result<Candidate, SolverError> {
+        let Self { solver, watch, give_up } = self;
+        watch.in_time(options.time_limit, give_up, || solver.solve_stack(d, options))
+    }
+
+    fn prepare<'s>(&'s mut self, d: &'s Discretization) -> Box<dyn PreparedSolver + 's> {
         let Self { solver, watch, give_up } = self;
         Box::new(WatchedPrepared { solver: solver.prepare(d), watch, give_up })
     }
@@ -146,24 +149,6 @@ struct WatchedPrepared<'s> {
 impl PreparedSolver for WatchedPrepared<'_> {
     fn solve(&mut self, options: &SolverOptions) -> Result<Candidate, SolverError> {
         self.watch.in_time(options.time_limit, self.give_up, || self.solver.solve(options))
-    }
-}
-
-/// Likewise, for stacks.
-struct WatchedStack {
-    solver: Box<dyn StackSolver>,
-    watch: Watch,
-    give_up: GiveUp,
-}
-
-impl StackSolver for WatchedStack {
-    fn solve_stack(
-        &mut self,
-        d: &StackDiscretization,
-        options: &SolverOptions,
-    ) -> Result<StackCandidate, SolverError> {
-        let Self { solver, watch, give_up } = self;
-        watch.in_time(options.time_limit, give_up, || solver.solve_stack(d, options))
     }
 }
 
@@ -342,21 +327,29 @@ mod tests {
             "counted"
         }
 
-        fn solve(
+        fn solve_pair(
             &mut self,
             d: &PairDiscretization,
             options: &SolverOptions,
         ) -> Result<Candidate, SolverError> {
-            self.prepare(d).solve(options)
+            ActiveSet.solve_pair(d, options)
         }
 
-        fn prepare<'s>(&'s mut self, d: &'s PairDiscretization) -> Box<dyn PreparedSolver + 's> {
+        fn solve_stack(
+            &mut self,
+            d: &StackDiscretization,
+            options: &SolverOptions,
+        ) -> Result<Candidate, SolverError> {
+            ActiveSet.solve_stack(d, options)
+        }
+
+        fn prepare<'s>(&'s mut self, d: &'s Discretization) -> Box<dyn PreparedSolver + 's> {
             self.0.fetch_add(1, Ordering::Relaxed);
             Box::new(Prepared(d))
         }
     }
 
-    struct Prepared<'d>(&'d PairDiscretization);
+    struct Prepared<'d>(&'d Discretization);
 
     impl PreparedSolver for Prepared<'_> {
         fn solve(&mut self, options: &SolverOptions) -> Result<Candidate, SolverError> {
@@ -368,7 +361,7 @@ mod tests {
     fn a_solver_with_somebody_beside_it_is_prepared_once_for_all_solves() {
         let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [4; 2], Pattern::Right).expect("a mesh");
         let problem = ContactProblem::builder().load(-15.0, 10.0).build().expect("a problem");
-        let d = PairDiscretization::new(&problem, mesh).expect("a discretization");
+        let d = Discretization::new(&problem, mesh).expect("a discretization");
         let count = Arc::new(AtomicUsize::new(0));
         let watch = Watch { events: mpsc::channel().0 };
         let mut solver = watch.over(Box::new(Counted(Arc::clone(&count))), late);
@@ -378,10 +371,8 @@ mod tests {
         }
         assert_eq!(count.load(Ordering::Relaxed), 1);
         drop(prepared);
-        // Without being prepared, it is so in every solve.
-        solver.solve(&d, &SolverOptions::default()).expect("it runs");
-        solver.solve(&d, &SolverOptions::default()).expect("it runs");
-        assert_eq!(count.load(Ordering::Relaxed), 3);
+        drop(solver.prepare(&d));
+        assert_eq!(count.load(Ordering::Relaxed), 2, "and again each time that it is asked for");
     }
 
     #[test]

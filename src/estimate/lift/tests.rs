@@ -117,7 +117,7 @@ fn with_solution<T>(
     let problem = ContactProblem::builder().tension(mu1, mu2).load(f1, f2).height(exact.height_function());
     let mesh = irregular(cells);
     let d = PairDiscretization::new(&problem.build().unwrap(), mesh.clone()).unwrap();
-    let candidate = ActiveSet.solve(&d, &SolverOptions::default()).unwrap();
+    let candidate = ActiveSet.solve_pair(&d, &SolverOptions::default()).unwrap();
     let solution = certify_pair(&d, candidate, 1e-8).unwrap();
     f(&d, &SubTriangulation::new(&mesh).unwrap(), &exact, &solution)
 }

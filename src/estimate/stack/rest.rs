@@ -1,25 +1,14 @@
 //! What the solver has left, carried to where the membrane is held.
 //!
-//! A rest `rho` that is constant on dual cells is balanced by a flux in Raviart-Thomas on the mesh itself: all of a triangle's rest goes
-//! to a neighbour that is nearer to an edge where the membrane is fixed, and out there. What that leaves has the mean zero on each
-//! triangle. So the norm of `rho` that counts is bounded on every domain, wherever the membrane is fixed; where it rests on a
-//! foundation alone, the flux ends in a triangle that takes it up.
+//! A rest `rho` that is constant on dual cells is balanced by a flux in Raviart-Thomas on the mesh itself: all of a triangle's rest goes,
+//! in equal parts, to the neighbours that are nearer to an edge where the membrane is fixed, and out there. What that leaves has the mean
+//! zero on each triangle. So the norm of `rho` that counts is bounded on every domain, wherever the membrane is fixed; where it rests
+//! on a foundation alone, the flux ends in a triangle that takes it up.
 
 use crate::discretization::StackDiscretization;
 use crate::flux::inner_product;
 use crate::geometry::poincare;
 use crate::mesh::HalfEdges;
-
-/// Where the rest of a triangle goes.
-#[derive(Debug, Clone, Copy)]
-enum Way {
-    /// Out of the domain through the edge opposite to this corner, where the membrane is fixed.
-    Out(usize),
-    /// To the neighbour across the edge opposite to this corner.
-    Through(usize),
-    /// Into the foundation.
-    Foundation,
-}
 
 /// `(sup_v int rho v / |||v|||)^2` or more, for membrane `i` of a stack with at least this tension on each triangle; `rho`, over
 /// vertices, is constant on dual cells. Linear time.
@@ -36,16 +25,22 @@ pub(super) fn norm_sq(d: &StackDiscretization, i: usize, least_tension: &[f64], 
     let own = carried.clone();
     let mut outward = vec![[0.0; 3]; carried.len()];
     let mut taken_up = vec![0.0; carried.len()];
-    for &(t, way) in ways(d, i, &neighbours).iter().rev() {
-        match way {
-            Way::Out(corner) => outward[t][corner] += carried[t],
-            Way::Through(corner) => {
-                let (next, opposite) = neighbours[t][corner].expect("a way leads to a neighbour");
-                outward[t][corner] += carried[t];
-                outward[next][opposite] -= carried[t];
-                carried[next] += carried[t];
+    let Ways { order, distance, fixed } = Ways::new(d, i, &neighbours);
+    for &t in order.iter().rev() {
+        let is_nearer = |&j: &usize| neighbours[t][j].is_some_and(|(next, _)| distance[next] < distance[t]);
+        let ways = || (0..3).filter(|j| if distance[t] == 0 { fixed[t][*j] } else { is_nearer(j) });
+        let count = ways().count();
+        if count == 0 {
+            taken_up[t] = carried[t];
+            continue;
+        }
+        let part = carried[t] / count as f64;
+        for j in ways() {
+            outward[t][j] += part;
+            if let Some((next, opposite)) = neighbours[t][j].filter(|_| distance[t] > 0) {
+                outward[next][opposite] -= part;
+                carried[next] += part;
             }
-            Way::Foundation => taken_up[t] = carried[t],
         }
     }
     let on_triangle = |t: usize| {
@@ -82,45 +77,61 @@ fn neighbours(d: &StackDiscretization) -> Neighbours {
     neighbours
 }
 
-/// The triangles in the order of their distance from where the membrane is held, and the way out of each.
-fn ways(d: &StackDiscretization, i: usize, neighbours: &Neighbours) -> Vec<(usize, Way)> {
-    let triangles = d.mesh().triangles();
-    let mut known = vec![false; triangles.len()];
-    let mut order = Vec::with_capacity(triangles.len());
-    let fixed = &d.held(i).fixed_edges;
-    for (t, corners) in triangles.iter().enumerate() {
-        let is_fixed = |&j: &usize| {
-            let (a, b) = (corners[(j + 1) % 3], corners[(j + 2) % 3]);
-            fixed.binary_search(&[a.min(b), a.max(b)]).is_ok()
-        };
-        if let Some(corner) = (0..3).find(is_fixed) {
-            known[t] = true;
-            order.push((t, Way::Out(corner)));
-        }
-    }
-    spread(neighbours, &mut order, &mut known, 0);
-    // Parts of the domain that a foundation alone holds.
-    for t in 0..triangles.len() {
-        if !known[t] && d.foundation_on(i, t) > 0.0 {
-            known[t] = true;
-            order.push((t, Way::Foundation));
-            let from = order.len() - 1;
-            spread(neighbours, &mut order, &mut known, from);
-        }
-    }
-    order
+/// How the rest of each triangle leaves it.
+struct Ways {
+    /// The triangles in the order of their distance.
+    order: Vec<usize>,
+    /// How many edges lie between a triangle and one where the membrane is held.
+    distance: Vec<usize>,
+    /// Whether the membrane is fixed on the edge opposite to each corner.
+    fixed: Vec<[bool; 3]>,
 }
 
-/// All triangles that can be reached from those in the order, from the one at `from` on.
-fn spread(neighbours: &Neighbours, order: &mut Vec<(usize, Way)>, known: &mut [bool], from: usize) {
-    let mut next = from;
-    while next < order.len() {
-        for (neighbour, corner) in neighbours[order[next].0].into_iter().flatten() {
-            if !known[neighbour] {
-                known[neighbour] = true;
-                order.push((neighbour, Way::Through(corner)));
+impl Ways {
+    fn new(d: &StackDiscretization, i: usize, neighbours: &Neighbours) -> Self {
+        let triangles = d.mesh().triangles();
+        let edges = &d.held(i).fixed_edges;
+        let is_fixed = |corners: &[usize; 3], j: usize| {
+            let (a, b) = (corners[(j + 1) % 3], corners[(j + 2) % 3]);
+            edges.binary_search(&[a.min(b), a.max(b)]).is_ok()
+        };
+        let fixed: Vec<[bool; 3]> =
+            triangles.iter().map(|corners| [0, 1, 2].map(|j| is_fixed(corners, j))).collect();
+        let mut ways = Self { order: Vec::new(), distance: vec![usize::MAX; triangles.len()], fixed };
+        for t in 0..triangles.len() {
+            if ways.fixed[t].contains(&true) {
+                ways.start(t);
             }
         }
-        next += 1;
+        ways.spread(neighbours, 0);
+        // Parts of the domain that a foundation alone holds.
+        for t in 0..triangles.len() {
+            if ways.distance[t] == usize::MAX && d.foundation_on(i, t) > 0.0 {
+                let from = ways.order.len();
+                ways.start(t);
+                ways.spread(neighbours, from);
+            }
+        }
+        ways
+    }
+
+    fn start(&mut self, t: usize) {
+        self.distance[t] = 0;
+        self.order.push(t);
+    }
+
+    /// Finds all triangles that can be reached from those in the order, from the one at `from` on.
+    fn spread(&mut self, neighbours: &Neighbours, from: usize) {
+        let mut next = from;
+        while next < self.order.len() {
+            let t = self.order[next];
+            for (neighbour, _) in neighbours[t].into_iter().flatten() {
+                if self.distance[neighbour] == usize::MAX {
+                    self.distance[neighbour] = self.distance[t] + 1;
+                    self.order.push(neighbour);
+                }
+            }
+            next += 1;
+        }
     }
 }

@@ -9,7 +9,7 @@ use crate::estimate::ErrorBound;
 use crate::fem::{DEGREE_4, gradient};
 use crate::mesh::Mesh;
 use crate::problem::ContactProblem;
-use crate::solver::{ActiveSet, SolverOptions, StackSolver};
+use crate::solver::{ActiveSet, ContactSolver, SolverOptions};
 
 /// What is asked of the solver.
 const TOLERANCE: f64 = 1e-9;

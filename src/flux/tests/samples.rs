@@ -65,7 +65,7 @@ pub(super) fn loads(problem: &ContactProblem, mesh: &Mesh) -> [Vec<[f64; 3]>; 2]
 
 /// The certified solution.
 pub(super) fn solve(d: &PairDiscretization) -> PairSolution {
-    let candidate: Candidate = ActiveSet.solve(d, &SolverOptions::default()).unwrap();
+    let candidate: Candidate = ActiveSet.solve_pair(d, &SolverOptions::default()).unwrap();
     certify_pair(d, candidate, TOLERANCE).unwrap_or_else(|rejected| panic!("{rejected}"))
 }
 

@@ -9,7 +9,7 @@ use crate::pictures::drawing::color::{CONTACT, CONTACT_BAND, FREE, LAYERS, WALL,
 use crate::pictures::drawing::frame::Frame;
 use crate::pictures::drawing::samples::Image;
 use crate::problem::{ContactProblem, Membrane};
-use crate::solver::{ActiveSet, SolverOptions, StackSolver};
+use crate::solver::{ActiveSet, ContactSolver, SolverOptions};
 use sample::{Gap, Stack, count_in, disk, open};
 
 #[test]

@@ -6,13 +6,14 @@ use super::*;
 use crate::action::certify_pair;
 use crate::mesh::samples::irregular;
 use crate::mesh::{Mesh, MeshSize, Pattern, disk, generate, l_shape, rectangle};
+use crate::multigrid::half::MAX_CYCLES;
 use crate::multigrid::hierarchy::{Hierarchy, LONGEST, Values};
 use crate::multigrid::sweep::Bounded;
 use crate::multigrid::truncation::Truncation;
 use crate::numeric::{Random, largest};
 use crate::problem::samples::drawn;
 use crate::problem::{Case, ContactProblem, Domain, Function};
-use crate::solver::ActiveSet;
+use crate::solver::{ActiveSet, Statistics};
 
 const TOLERANCE: f64 = 1e-9;
 
@@ -24,6 +25,11 @@ const CORNER_CYCLES: usize = 16;
 
 /// Two energies of size one that differ by less are the same.
 const ENERGY_ROUNDING: f64 = 1e-13;
+
+/// What comes of these levels alone.
+fn on_levels(hierarchy: &Hierarchy, d: &PairDiscretization) -> Statistics {
+    pair::multigrid::solve_on(hierarchy, d, NAME, &options(), Instant::now()).expect("it runs").statistics
+}
 
 fn problem(tension: [f64; 2], height: f64) -> ContactProblem {
     let load = Function::from_fn(|x: f64, y: f64| 30.0 * (12.566 * x).sin() * (9.425 * y).sin());
@@ -53,7 +59,7 @@ fn meshes() -> Vec<Mesh> {
 }
 
 fn solve_by(solver: &mut dyn ContactSolver, d: &PairDiscretization, options: &SolverOptions) -> Candidate {
-    solver.solve(d, options).expect("it runs")
+    solver.solve_pair(d, options).expect("it runs")
 }
 
 fn options() -> SolverOptions {
@@ -178,25 +184,23 @@ fn a_warm_start_needs_no_cycles_from_its_own_answer() {
 fn on_stretched_triangles_the_levels_are_algebraic() {
     let mesh = rectangle([0.0, 0.0], [1.0, 0.01], [64; 2], Pattern::Right).unwrap();
     let problem = ContactProblem::builder().tension(1.0, 3.0).load(-1.5e5, 1e5).height(0.1).build().unwrap();
-    let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
-    let status = |levels: fn(&PairDiscretization) -> Hierarchy| {
-        let candidate = solve_on(&levels(&d), &d, &options(), Instant::now()).expect("it runs");
-        candidate.statistics.status
-    };
-    assert_eq!(status(Hierarchy::new), Status::Stalled);
-    assert_eq!(status(Hierarchy::algebraic), Status::Solved);
-    let candidate = solve_by(&mut Multigrid, &d, &options());
+    let posed = Discretization::new(&problem, mesh.clone()).unwrap();
+    let d = posed.as_pair().unwrap();
+    let status = |genealogy: &Genealogy| on_levels(&Hierarchy::of_pair(d, genealogy), d).status;
+    assert_eq!(status(&Genealogy::of(&mesh)), Status::Stalled);
+    assert_eq!(status(&Genealogy::unknown(mesh.points().len())), Status::Solved);
+    let candidate = solve_by(&mut Multigrid, d, &options());
     let tried = &candidate.statistics.stalled;
     assert!(tried.len() == 1 && tried[0].iterations > 0, "what stalled is recorded: {tried:?}");
     // Once it has gone over, it stays there; and is the solver that it would be anew.
     let mut multigrid = Multigrid;
-    let mut prepared = multigrid.prepare(&d);
+    let mut prepared = multigrid.prepare(&posed);
     let [first, again] = [(); 2].map(|()| prepared.solve(&options()).expect("it runs"));
     assert_eq!(first.statistics.stalled, *tried);
     assert_eq!(again.statistics.stalled, *tried, "the record stays");
     assert_eq!(first.displacement, candidate.displacement);
     assert_eq!(again.displacement, candidate.displacement);
-    assert!(certify_pair(&d, candidate, TOLERANCE).is_ok());
+    assert!(certify_pair(d, candidate, TOLERANCE).is_ok());
 }
 
 /// What stalled counts where it was spent, and is named once, also when it has stalled before.
@@ -219,15 +223,16 @@ fn the_seconds_of_what_stalled_are_those_of_setup_and_of_solving() {
 #[test]
 fn a_prepared_solver_finds_what_the_solver_finds() {
     let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [32; 2], Pattern::Right).unwrap();
-    let d = PairDiscretization::new(&problem([1.0, 2.0], 0.05), mesh).unwrap();
+    let posed = Discretization::new(&problem([1.0, 2.0], 0.05), mesh).unwrap();
+    let d = posed.as_pair().unwrap();
     let mut multigrid = Multigrid;
-    let mut prepared = multigrid.prepare(&d);
+    let mut prepared = multigrid.prepare(&posed);
     for tolerance in [1e-3, 1e-9, 1e-6] {
         let options = SolverOptions { tolerance, ..SolverOptions::default() };
         let found = prepared.solve(&options).expect("it runs");
-        assert_eq!(found.displacement, solve_by(&mut Multigrid, &d, &options).displacement);
+        assert_eq!(found.displacement, solve_by(&mut Multigrid, d, &options).displacement);
         assert_eq!(
-            certify_pair(&d, found, 1e-9).is_ok(),
+            certify_pair(d, found, 1e-9).is_ok(),
             tolerance == 1e-9,
             "the tolerance is that asked for"
         );
@@ -239,9 +244,9 @@ fn a_prepared_solver_finds_what_the_solver_finds() {
 fn a_slow_pace_is_kept_and_none_is_given_up() {
     let mesh = rectangle([0.0, 0.0], [1.55, 0.5], [2, 8], Pattern::Crossed).unwrap();
     let d = PairDiscretization::new(&problem([1.0, 1.0], 0.0), mesh.clone()).unwrap();
-    let slow = solve_on(&Hierarchy::new(&d), &d, &options(), Instant::now()).expect("it runs");
-    assert_eq!(slow.statistics.status, Status::Solved);
-    assert!(slow.statistics.iterations > 2 * CYCLES, "it is slow: {}", slow.statistics.iterations);
+    let slow = on_levels(&Hierarchy::new(&d), &d);
+    assert_eq!(slow.status, Status::Solved);
+    assert!(slow.iterations > 2 * CYCLES, "it is slow: {}", slow.iterations);
 
     let unreachable = SolverOptions { tolerance: 1e-30, ..options() };
     let cycles = solve_by(&mut Multigrid, &d, &unreachable).statistics.iterations;

@@ -2,38 +2,40 @@
 
 use web_time::Instant;
 
-use super::reduced::{Equilibrium, solve};
-use super::{StackCandidate, StackSolver};
+use super::reduced::{self, Equilibrium};
 use crate::discretization::StackDiscretization;
 use crate::multigrid::cholesky::NotFactored;
 use crate::qp::{Limits, Status};
-use crate::solver::active_set::{CAUTION, ROUNDING, Repair, SLIGHT};
-use crate::solver::{ActiveSet, ContactSolver, SolverError, SolverOptions, Statistics};
+use crate::solver::repair::{CAUTION, ROUNDING, Repair, SLIGHT};
+use crate::solver::{Candidate, SolverError, SolverOptions, Statistics};
 
 /// The limit of steps when none is given: a cold start needs about as many as there are layers of vertices between the free
 /// boundary and where the first guess puts it.
 const MAX_STEPS: usize = 2000;
 
-/// From open gaps, the contact set is repaired until it is consistent; in each step, all that touches moves as one.
-impl StackSolver for ActiveSet {
-    fn solve_stack(
-        &mut self,
-        d: &StackDiscretization,
-        options: &SolverOptions,
-    ) -> Result<StackCandidate, SolverError> {
-        options.check()?;
-        let start = Instant::now();
-        let found = settle(d, vec![false; d.rows().len()], &options.limits(MAX_STEPS, start))?;
-        Ok(StackCandidate {
-            displacement: found.equilibrium.displacement,
-            multiplier: found.equilibrium.multiplier,
-            statistics: Statistics {
-                iterations: found.repairs + 1,
-                solve_seconds: start.elapsed().as_secs_f64(),
-                ..Statistics::of(self.name(), found.status)
-            },
-        })
-    }
+/// From the gaps that a warm start closes, else from open ones, the contact set is repaired until it is consistent; in each step, all
+/// that touches moves as one. `name` is that of the method.
+pub(in crate::solver) fn solve(
+    d: &StackDiscretization,
+    name: &str,
+    options: &SolverOptions,
+) -> Result<Candidate, SolverError> {
+    options.check()?;
+    let start = Instant::now();
+    let active = match &options.warm_start {
+        Some(start) if start.fits_stack(d) => guess(d, &start.displacement, &start.multiplier),
+        _ => vec![false; d.rows().len()],
+    };
+    let found = settle(d, active, &options.limits(MAX_STEPS, start))?;
+    Ok(Candidate {
+        displacement: found.equilibrium.displacement,
+        multiplier: found.equilibrium.multiplier,
+        statistics: Statistics {
+            iterations: found.repairs + 1,
+            solve_seconds: start.elapsed().as_secs_f64(),
+            ..Statistics::of(name, found.status)
+        },
+    })
 }
 
 /// The equilibrium of the last contact set.
@@ -55,7 +57,7 @@ pub(super) fn settle(
     let mut overlooked = stages.next().expect("two stages");
     let (mut repair, mut repairs) = (Repair::default(), 0);
     loop {
-        let mut equilibrium = solve(d, &active)?;
+        let mut equilibrium = reduced::solve(d, &active)?;
         let mut wrong = wrong(d, &active, &equilibrium, overlooked);
         if wrong.is_empty()
             && let Some(next) = stages.next()

@@ -8,20 +8,16 @@
 //!
 //! likewise with `v = psi - u` under a ceiling; without an obstacle `psi` is zero, and `v` has no bound.
 
-#[cfg(test)]
-mod tests;
-
 use std::borrow::Cow;
 
 use web_time::Instant;
 
-use super::{StackCandidate, StackSolver};
 use crate::discretization::StackDiscretization;
 use crate::multigrid::half::{HalfProblem, HalfSolution, MAX_CYCLES, solve};
-use crate::multigrid::hierarchy::{Genealogy, Hierarchy};
+use crate::multigrid::hierarchy::Hierarchy;
 use crate::numeric::largest;
 use crate::qp::Status;
-use crate::solver::{ContactSolver, Multigrid, SolverError, SolverOptions, Statistics};
+use crate::solver::{Candidate, SolverError, SolverOptions, Statistics};
 
 /// The residuals may miss the tolerance by as much: the rest is for the rounding of `psi + v`.
 const SHARE: f64 = 0.5;
@@ -33,65 +29,19 @@ const FAR: f64 = 8.0;
 /// How often an obstacle that is far away is moved: each time, a displacement that is known to no digit becomes known to fifteen.
 const APPROACHES: usize = 3;
 
-impl Multigrid {
-    /// Whether it solves stacks of so many membranes, with a ceiling and a floor or without: one membrane with at most one
-    /// obstacle.
-    pub fn solves_stack(membranes: usize, [ceiling, floor]: [bool; 2]) -> bool {
-        membranes == 1 && !(ceiling && floor)
-    }
-}
-
-/// One membrane with at most one obstacle; on levels as for the pair.
-impl StackSolver for Multigrid {
-    fn solve_stack(
-        &mut self,
-        d: &StackDiscretization,
-        options: &SolverOptions,
-    ) -> Result<StackCandidate, SolverError> {
-        options.check()?;
-        if !Self::solves_stack(d.membranes(), d.has_obstacles()) {
-            return Err(SolverError::Coupled);
-        }
-        let start = Instant::now();
-        let (candidate, refinements) = attempt(d, &Genealogy::of(d.mesh()), options, start)?;
-        if candidate.statistics.status != Status::Stalled || refinements == 0 {
-            return Ok(candidate);
-        }
-        let unknown = Genealogy::unknown(d.mesh().points().len());
-        let (mut on_algebraic_levels, _) = attempt(d, &unknown, options, start)?;
-        let method = format!("{} on levels of {refinements} refinements", self.name());
-        on_algebraic_levels.statistics = on_algebraic_levels.statistics.after(method, candidate.statistics);
-        Ok(on_algebraic_levels)
-    }
-}
-
-/// Solves on levels of this genealogy, and says how many follow refinements; the time limit counts from `start`.
-fn attempt(
-    d: &StackDiscretization,
-    genealogy: &Genealogy,
-    options: &SolverOptions,
-    start: Instant,
-) -> Result<(StackCandidate, usize), SolverError> {
-    let begin = Instant::now();
-    let is_free: Vec<bool> = (0..d.mesh().points().len()).map(|a| d.unknown(1, a).is_some()).collect();
-    let hierarchy = Hierarchy::over(&d.matrix(1), &is_free, genealogy);
-    let setup_seconds = begin.elapsed().as_secs_f64();
-    let mut candidate = solve_on(&hierarchy, d, options, start)?;
-    candidate.statistics.setup_seconds = setup_seconds;
-    candidate.statistics.solve_seconds = begin.elapsed().as_secs_f64() - setup_seconds;
-    Ok((candidate, hierarchy.refinements()))
-}
-
 /// Solves on these levels, and again from a nearer obstacle where that is far away.
-fn solve_on(
+pub(in crate::solver) fn solve_on(
     hierarchy: &Hierarchy,
     d: &StackDiscretization,
+    name: &str,
     options: &SolverOptions,
     start: Instant,
-) -> Result<StackCandidate, SolverError> {
+) -> Result<Candidate, SolverError> {
     let limits = options.limits(MAX_CYCLES, start);
     let mut obstacle = Obstacle::of(d);
-    let mut found = solve(hierarchy, obstacle.half(hierarchy, options, None), &limits)?;
+    let guess = options.warm_start.as_ref().filter(|guess| guess.fits_stack(d));
+    let guess = guess.map(|guess| guess.displacement[0].as_slice());
+    let mut found = solve(hierarchy, obstacle.half(hierarchy, options, guess), &limits)?;
     let mut level_iterations = std::mem::take(&mut found.cycles);
     let iterations = level_iterations.last_mut().expect("there is a finest level");
     let mut u = obstacle.displacement(hierarchy, &found);
@@ -109,14 +59,14 @@ fn solve_on(
     // Nothing touches the obstacle where it is not the real one, or the answer is that of another problem.
     let status = if obstacle.is_touched_where_raised(&u) { Status::Stalled } else { found.status };
     let y = hierarchy.to_vertices(&found.y);
-    Ok(StackCandidate {
+    Ok(Candidate {
         displacement: vec![u],
         multiplier: d.rows().iter().map(|row| y[row.vertex]).collect(),
         statistics: Statistics {
             iterations,
             level_iterations,
             energies: found.energies,
-            ..Statistics::of(Multigrid.name(), status)
+            ..Statistics::of(name, status)
         },
     })
 }

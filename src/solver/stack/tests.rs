@@ -14,12 +14,12 @@ use crate::problem::ContactProblem;
 use crate::qp::Clarabel;
 #[cfg(any(feature = "clarabel", feature = "osqp"))]
 use crate::solver::QpSolver;
-use crate::solver::{ActiveSet, Auto, SolverOptions, StackSolver};
+use crate::solver::{ActiveSet, Auto, ContactSolver, SolverOptions};
 
 /// What is asked of solvers and of the certificate.
 const TOLERANCE: f64 = 1e-9;
 
-fn solvers() -> Vec<(&'static str, Box<dyn StackSolver>)> {
+fn solvers() -> Vec<(&'static str, Box<dyn ContactSolver>)> {
     vec![
         ("auto", Box::new(Auto)),
         ("active-set", Box::new(ActiveSet)),
@@ -30,7 +30,7 @@ fn solvers() -> Vec<(&'static str, Box<dyn StackSolver>)> {
     ]
 }
 
-fn solve_by(solver: &mut dyn StackSolver, d: &StackDiscretization) -> StackSolution {
+fn solve_by(solver: &mut dyn ContactSolver, d: &StackDiscretization) -> StackSolution {
     let options = SolverOptions { tolerance: TOLERANCE, ..SolverOptions::default() };
     certify_stack(d, solver.solve_stack(d, &options).unwrap(), TOLERANCE).unwrap()
 }

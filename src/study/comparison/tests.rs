@@ -2,6 +2,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::*;
+use crate::discretization::StackDiscretization;
 use crate::mesh::Mesh;
 use crate::problem::ContactProblem;
 use crate::solver::{ActiveSet, Candidate, SolverError};
@@ -43,8 +44,16 @@ impl<F: FnMut(Candidate) -> Result<Candidate, SolverError> + Send> ContactSolver
         "altered"
     }
 
-    fn solve(&mut self, d: &PairDiscretization, options: &SolverOptions) -> Result<Candidate, SolverError> {
-        self.0(ActiveSet.solve(d, options)?)
+    fn solve_pair(
+        &mut self,
+        d: &PairDiscretization,
+        options: &SolverOptions,
+    ) -> Result<Candidate, SolverError> {
+        self.0(ActiveSet.solve_pair(d, options)?)
+    }
+
+    fn solve_stack(&mut self, _: &StackDiscretization, _: &SolverOptions) -> Result<Candidate, SolverError> {
+        Err(SolverError::Coupled)
     }
 }
 

@@ -3,8 +3,8 @@
 use std::io::Cursor;
 use std::io::Write;
 
-use membrane_contact::action::certify_pair;
-use membrane_contact::discretization::PairDiscretization;
+use membrane_contact::action::{ContactSolution, certify_pair};
+use membrane_contact::discretization::{Discretization, PairDiscretization};
 use membrane_contact::fem::element_loads;
 use membrane_contact::flux::{FluxDefects, Reconstruction, Reconstructor};
 use membrane_contact::mesh::{DualMesh, SubTriangulation};
@@ -15,10 +15,10 @@ use membrane_contact::qp::{
     QpPart, QpProblem, contact_qp, read_answer, write_matrix_market, write_npz, write_qps,
 };
 use membrane_contact::solver::Candidate;
-use membrane_contact::study::Bounded;
 use npyz::WriterBuilder;
 use serde_json::Value;
 
+use super::Bounded;
 use super::problems::Hostile;
 
 /// What may be absent from the summary of a certified solution, and why: nobody left the choice open, there was nothing to
@@ -41,7 +41,8 @@ pub fn complaints(hostile: &Hostile, d: &PairDiscretization, bounded: &Bounded) 
 /// The summary as JSON, where NaN and infinity are `null`.
 pub fn summary(title: &str, d: &PairDiscretization, bounded: &Bounded) -> Value {
     let Bounded { solution, bound, tolerance, .. } = bounded;
-    let summary = Summary::new(title, d, *tolerance, Ok(solution), Seconds::default(), Some(bound));
+    let (d, solution) = (Discretization::Pair(d.clone()), ContactSolution::Pair(solution.clone()));
+    let summary = Summary::new(title, &d, *tolerance, Ok(&solution), Seconds::default(), Some(Ok(bound)));
     let mut json = Vec::new();
     summary.write(&mut json).expect("it is written to memory");
     serde_json::from_slice(&json).expect("it is JSON")
@@ -179,7 +180,7 @@ fn answered(d: &PairDiscretization, qp: &QpProblem, bounded: &Bounded) -> Result
     let archive = archive(&[("x.npy", &x), ("y.npy", &y)]);
     let answer =
         read_answer(Cursor::new(archive), qp.q().len(), qp.b().len()).map_err(|error| error.to_string())?;
-    let candidate = Candidate::from_answer(d, answer, solution.statistics().clone());
+    let candidate = Candidate::from_pair_answer(d, answer, solution.statistics().clone());
     certify_pair(d, candidate, bounded.tolerance)
         .map(|_| ())
         .map_err(|rejected| format!("read back: {rejected}"))

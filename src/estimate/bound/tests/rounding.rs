@@ -11,8 +11,8 @@ fn solved(load: f64, height: f64) -> ErrorBound {
     let problem = ContactProblem::builder().load(-load, load).height(height).build().unwrap();
     let mesh = square(8);
     let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
-    let candidate = ActiveSet.solve(&d, &SolverOptions::default()).unwrap();
-    ErrorBound::new(&problem, None, &d, &candidate.displacement).unwrap()
+    let candidate = ActiveSet.solve_pair(&d, &SolverOptions::default()).unwrap();
+    ErrorBound::new(&problem, None, &d, candidate.as_pair().unwrap()).unwrap()
 }
 
 #[test]

@@ -15,7 +15,7 @@ use crate::mesh::{Mesh, Pattern, rectangle};
 use crate::numeric::Random;
 use crate::problem::samples::stack::drawn;
 use crate::problem::{ContactProblem, Field, Function, Membrane};
-use crate::solver::{ActiveSet, SolverOptions, StackSolver};
+use crate::solver::{ActiveSet, ContactSolver, SolverOptions};
 
 /// The energy norm of the difference of a solution and that on its mesh refined twice.
 fn distance_to_finer(problem: &ContactProblem, mesh: &Mesh, coarse: &Displacements) -> f64 {

@@ -276,7 +276,7 @@ fn one_membrane_over_a_floor_is_the_gap_of_a_pair() {
     .unwrap();
     let d = PairDiscretization::new(&pair, mesh.clone()).unwrap();
     let of_pair =
-        certify_pair(&d, ActiveSet.solve(&d, &SolverOptions::default()).unwrap(), TOLERANCE).unwrap();
+        certify_pair(&d, ActiveSet.solve_pair(&d, &SolverOptions::default()).unwrap(), TOLERANCE).unwrap();
     // m = mu1 mu2 / (mu1 + mu2) = 1, and m w solves the problem of the load (f1 - f2) / 2 = f1.
     let sheet = Membrane::new(1.0).load(load()).height(0.1);
     let d = posed(&ContactProblem::obstacle(sheet, 0.0).unwrap(), &mesh);
@@ -301,7 +301,7 @@ fn a_floor_out_of_reach_leaves_the_pair_as_it_is() {
     let pair = ContactProblem::pair([1.0, 3.0], [load.clone(), 10.0.into()], 0.05).unwrap();
     let d = PairDiscretization::new(&pair, mesh.clone()).unwrap();
     let of_pair =
-        certify_pair(&d, ActiveSet.solve(&d, &SolverOptions::default()).unwrap(), TOLERANCE).unwrap();
+        certify_pair(&d, ActiveSet.solve_pair(&d, &SolverOptions::default()).unwrap(), TOLERANCE).unwrap();
     let membranes = [Membrane::new(1.0).load(load).height(0.05), Membrane::new(3.0).load(10.0)];
     let [upper, lower] = membranes;
     let problem = ContactProblem::stack().membrane(upper).membrane(lower).floor(-100.0).build().unwrap();

@@ -8,7 +8,7 @@ use crate::mesh::samples::{renumbered, with_sides_and_patch};
 use crate::mesh::{Mesh, Pattern, rectangle};
 use crate::numeric::largest;
 use crate::problem::samples::stack::{Drawn, Numbers, drawn};
-use crate::solver::{ActiveSet, SolverOptions, StackSolver};
+use crate::solver::{ActiveSet, ContactSolver, SolverOptions};
 
 /// Solvers certified within [`TOLERANCE`] agree so far, relative to the displacements.
 const AGREEMENT: f64 = 1e-6;
@@ -104,7 +104,7 @@ fn the_certificate_sees_what_is_broken() {
         .collect();
     let row = pressed[pressed.len() / 2];
     let (gap, vertex) = (d.rows()[row].gap, d.rows()[row].vertex);
-    let check = |change: &dyn Fn(&mut crate::solver::StackCandidate)| {
+    let check = |change: &dyn Fn(&mut crate::solver::Candidate)| {
         let mut broken = candidate.clone();
         change(&mut broken);
         certify_stack(&d, broken, TOLERANCE).map(|_| ()).map_err(|rejected| rejected.residuals.unwrap())

@@ -6,28 +6,23 @@
 
 use web_time::Instant;
 
-use super::SolverOptions;
 use super::active_set::{guess, settle};
-use super::candidate::{Candidate, unknowns};
-use super::statistics::PolishReport;
-use crate::discretization::{Displacement, PairDiscretization};
-use crate::qp::{KktResiduals, Limits, QpProblem};
-
-/// Linear solves for the gap. An accurate answer needs one to four; where the membranes touch without pushing, the contact
-/// set moves by one layer of vertices at a time. A solve costs about a hundredth of an interior-point solve.
-const MAX_STEPS: usize = 100;
+use super::unknowns::unknowns;
+use crate::discretization::PairDiscretization;
+use crate::qp::{KktResiduals, QpProblem};
+use crate::solver::{Candidate, PolishReport, SolverOptions};
 
 /// Polishes the candidate and keeps the result if its KKT residuals are smaller. `None` when a linear system cannot be
 /// solved, or the solve has to stop.
-pub(super) fn polish(
+pub(in crate::solver) fn polish(
     d: &PairDiscretization,
     qp: &QpProblem,
     candidate: &mut Candidate,
     options: &SolverOptions,
     start: Instant,
 ) -> Option<PolishReport> {
-    let limits = limits(options, start)?;
-    let residual = |displacement: &Displacement, multiplier: &[f64]| {
+    let limits = options.limits_of_polish(start)?;
+    let residual = |displacement: &[Vec<f64>], multiplier: &[f64]| {
         KktResiduals::new(qp, &unknowns(d, displacement), multiplier).worst()
     };
     let polished = settle(d, guess(d, &candidate.displacement, &candidate.multiplier), &limits).ok()?;
@@ -39,10 +34,4 @@ pub(super) fn polish(
         candidate.multiplier = polished.multiplier;
     }
     Some(report)
-}
-
-/// Those of a polish in a solve that has begun at `start`: the limit of iterations is the backend's. `None` where no time is left.
-pub(super) fn limits(options: &SolverOptions, start: Instant) -> Option<Limits> {
-    let limits = options.limits(MAX_STEPS, start).with_iterations(MAX_STEPS);
-    limits.reached(0).is_none().then_some(limits)
 }

@@ -7,7 +7,7 @@ use crate::discretization::PairDiscretization;
 use crate::multigrid::cholesky::NotFactored;
 use crate::multigrid::hierarchy::{Hierarchy, Level};
 use crate::qp::Limits;
-use crate::solver::decoupled::Decoupled;
+use crate::solver::pair::decoupled::Decoupled;
 
 /// Projected Gauss-Seidel sweeps over a gap that comes from the next coarser level. They save a factorisation or two on each level
 /// where membranes part with a jump of the action.

@@ -3,6 +3,19 @@
 use std::collections::HashSet;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
+/// A multiplier, or a gap times its diagonal entry, below zero by less than this fraction of the terms that cancel in its row
+/// is a zero, rounded. Measured in the row alone: at the tip of a mesh refined towards a point, gaps of any size are real.
+pub(super) const ROUNDING: f64 = 256.0 * f64::EPSILON;
+
+/// A gap below zero by less than this fraction of the displacements' scale is overlooked until nothing else is wrong: far from
+/// the right contact set such gaps come and go, and vertices that have joined for them leave again one layer in a step
+/// (138 factorisations in place of 34 for case F on 300,000 vertices).
+pub(super) const SLIGHT: f64 = 1e-12;
+
+/// A vertex is taken for touching when its multiplier is so much larger than its gap, each in units of the data. A guess
+/// that is too small is repaired in fewer steps than one that is too large: all that has passed through is seen at once.
+pub(super) const CAUTION: f64 = 30.0;
+
 /// Which of the wrong signs are repaired in a step: all of them, where that makes progress.
 ///
 /// On meshes where `K` is an M-matrix this ends by itself. Elsewhere, and with rounding at vertices that touch without
@@ -10,7 +23,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 /// rule for positive definite matrices), until fewer are wrong than ever before (Judice, Pires, Comput. Oper. Res. 21
 /// (1994) 587).
 #[derive(Default)]
-pub(in crate::solver) struct Repair {
+pub(super) struct Repair {
     /// The fewest that were wrong.
     fewest: Option<usize>,
     single: bool,
@@ -19,7 +32,7 @@ pub(in crate::solver) struct Repair {
 }
 
 impl Repair {
-    pub(in crate::solver) fn apply(&mut self, active: &mut [bool], wrong: &[usize]) {
+    pub(super) fn apply(&mut self, active: &mut [bool], wrong: &[usize]) {
         let progress = self.fewest.is_none_or(|fewest| wrong.len() < fewest);
         self.single = !progress && (self.single || !self.seen.insert(fingerprint(active)));
         if progress {

@@ -1,12 +1,13 @@
 use sprs::{CsMat, TriMat};
 use web_time::Instant;
 
-use super::obstacle::SLIGHT;
 use super::*;
 use crate::action::certify_pair;
 use crate::mesh::samples::irregular;
 use crate::mesh::{Bisection, Mesh, Pattern, l_shape, rectangle};
 use crate::problem::{Case, ContactProblem, Function};
+use crate::solver::repair::SLIGHT;
+use crate::solver::{ActiveSet, ContactSolver};
 
 /// Factorisations on a level that nested iteration needs at most.
 const FACTORIZATIONS: usize = 4;
@@ -80,7 +81,7 @@ fn few_factorisations_are_needed_on_each_level() {
     let problem = ContactProblem::builder().tension(1.0, 1.0).load(-10.0, load).height(0.05).build().unwrap();
     let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [128; 2], Pattern::Right).unwrap();
     let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
-    let found = ActiveSet.solve(&d, &SolverOptions::default()).unwrap();
+    let found = ActiveSet.solve_pair(&d, &SolverOptions::default()).unwrap();
     let steps = &found.statistics.level_iterations;
     assert_eq!(steps.len(), 7);
     assert!(steps.iter().all(|&steps| steps <= FACTORIZATIONS), "{steps:?}");
@@ -98,7 +99,7 @@ fn biactive_data_and_obtuse_triangles_are_solved() {
         let problem = Case::FullContact.solution(&parameters).unwrap().problem().unwrap();
         for mesh in [rectangle([0.0, 0.0], [1.0, 1.0], [24; 2], Pattern::Right).unwrap(), irregular(16)] {
             let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
-            let found = ActiveSet.solve(&d, &SolverOptions::default()).unwrap();
+            let found = ActiveSet.solve_pair(&d, &SolverOptions::default()).unwrap();
             assert_eq!(found.statistics.status, Status::Solved);
             assert!(certify_pair(&d, found, TOLERANCE).is_ok());
         }
@@ -111,7 +112,7 @@ fn biactive_data_and_obtuse_triangles_are_solved() {
     let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
     let positive = d.stiffness().iter().filter(|&(&k, (i, j))| i != j && k > 0.1).count();
     assert!(positive > 100, "K is no M-matrix");
-    let found = ActiveSet.solve(&d, &SolverOptions::default()).unwrap();
+    let found = ActiveSet.solve_pair(&d, &SolverOptions::default()).unwrap();
     assert!(certify_pair(&d, found, TOLERANCE).is_ok());
 }
 
@@ -134,7 +135,7 @@ fn contact_is_found_at_the_tip_of_a_deep_mesh() {
     let without = Mesh::new(with_ancestry.points().to_vec(), with_ancestry.triangles().to_vec()).unwrap();
     for mesh in [with_ancestry, without] {
         let d = PairDiscretization::new(&problem, mesh.clone()).unwrap();
-        let found = ActiveSet.solve(&d, &SolverOptions::default()).unwrap();
+        let found = ActiveSet.solve_pair(&d, &SolverOptions::default()).unwrap();
         let solution = certify_pair(&d, found, TOLERANCE).expect("certified");
         assert!(d.interior().iter().all(|&a| solution.contact()[a]), "the load closes the gap everywhere");
         // Vertices near the tip that are left out pass through by less than a rounded displacement, but not by rounding.

@@ -28,7 +28,7 @@ fn posed(problem: &ContactProblem, mesh: &Mesh) -> StackDiscretization {
     StackDiscretization::new(problem, mesh.clone()).unwrap()
 }
 
-fn certified(d: &StackDiscretization, solver: &mut dyn StackSolver) -> StackSolution {
+fn certified(d: &StackDiscretization, solver: &mut dyn ContactSolver) -> StackSolution {
     certify_stack(d, solver.solve_stack(d, &options()).unwrap(), TOLERANCE).unwrap()
 }
 
@@ -230,7 +230,7 @@ fn an_obstacle_that_is_far_away_costs_no_digits() {
     let obstacle = Obstacle::of(&d);
     let limits = options().limits(MAX_CYCLES, Instant::now());
     let found = solve(&hierarchy, obstacle.half(&hierarchy, &options(), None), &limits).unwrap();
-    let candidate = StackCandidate {
+    let candidate = Candidate {
         displacement: vec![obstacle.displacement(&hierarchy, &found)],
         multiplier: vec![0.0; d.rows().len()],
         statistics: Statistics::of(Multigrid.name(), found.status),

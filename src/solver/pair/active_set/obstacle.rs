@@ -2,26 +2,13 @@
 
 use sprs::CsMat;
 
-use super::repair::Repair;
-use crate::discretization::{Displacement, PairDiscretization};
+use crate::discretization::PairDiscretization;
 use crate::multigrid::cholesky::{Cholesky, NotFactored};
 use crate::qp::{Limits, Status};
-
-/// A multiplier, or a gap times its diagonal entry, below zero by less than this fraction of the terms that cancel in its row
-/// is a zero, rounded. Measured in the row alone: at the tip of a mesh refined towards a point, gaps of any size are real.
-pub(in crate::solver) const ROUNDING: f64 = 256.0 * f64::EPSILON;
-
-/// A gap below zero by less than this fraction of the displacements' scale is overlooked until nothing else is wrong: far from
-/// the right contact set such gaps come and go, and vertices that have joined for them leave again one layer in a step
-/// (138 factorisations in place of 34 for case F on 300,000 vertices).
-pub(in crate::solver) const SLIGHT: f64 = 1e-12;
-
-/// A vertex is taken for touching when its multiplier is so much larger than its gap, each in units of the data. A guess
-/// that is too small is repaired in fewer steps than one that is too large: all that has passed through is seen at once.
-pub(in crate::solver) const CAUTION: f64 = 30.0;
+use crate::solver::repair::{CAUTION, ROUNDING, Repair, SLIGHT};
 
 /// `K w - y = b`, `w >= 0`, `y >= 0`, `w'y = 0`.
-pub(in crate::solver) struct Obstacle<'k> {
+pub(in crate::solver::pair) struct Obstacle<'k> {
     k: &'k CsMat<f64>,
     b: Vec<f64>,
     /// The size of the terms that cancel in `b`.
@@ -32,14 +19,14 @@ pub(in crate::solver) struct Obstacle<'k> {
 }
 
 /// A gap and its multiplier.
-pub(in crate::solver) struct Gap {
-    pub(in crate::solver) w: Vec<f64>,
-    pub(in crate::solver) y: Vec<f64>,
+pub(in crate::solver::pair) struct Gap {
+    pub(in crate::solver::pair) w: Vec<f64>,
+    pub(in crate::solver::pair) y: Vec<f64>,
 }
 
 impl<'k> Obstacle<'k> {
     /// `scale` is the typical size of `w`.
-    pub(in crate::solver) fn new(
+    pub(in crate::solver::pair) fn new(
         k: &'k CsMat<f64>,
         b: Vec<f64>,
         b_terms: Vec<f64>,
@@ -50,7 +37,7 @@ impl<'k> Obstacle<'k> {
 
     /// Repairs a contact set until it is consistent: vertices that pull leave it, vertices that have passed through each other
     /// join it, those that have so by little last. Returns the result, whether it is consistent, and the number of repairs.
-    pub(in crate::solver) fn settle(
+    pub(in crate::solver::pair) fn settle(
         &mut self,
         active: Vec<bool>,
         limits: &Limits,
@@ -127,7 +114,7 @@ impl<'k> Obstacle<'k> {
     }
 
     /// `K^-1 b`: the half without obstacle, by the same symbolic factorisation.
-    pub(in crate::solver) fn without_obstacle(&mut self, b: &[f64]) -> Result<Vec<f64>, NotFactored> {
+    pub(in crate::solver::pair) fn without_obstacle(&mut self, b: &[f64]) -> Result<Vec<f64>, NotFactored> {
         self.cholesky.refactor(self.k.data().iter().copied())?;
         self.cholesky.solve(b)
     }
@@ -138,15 +125,15 @@ impl<'k> Obstacle<'k> {
 }
 
 /// The vertices that touch, as displacements and multipliers have it.
-pub(in crate::solver) fn guess(
+pub(in crate::solver::pair) fn guess(
     d: &PairDiscretization,
-    [u1, u2]: &Displacement,
+    u: &[Vec<f64>],
     multiplier: &[f64],
 ) -> Vec<bool> {
     let scales = d.scales();
     let touches = |(&a, y): (&usize, &f64)| {
         let action = y / (d.dual_area()[a] * scales.force_density);
-        action > CAUTION * (u1[a] - u2[a]) / scales.displacement
+        action > CAUTION * (u[0][a] - u[1][a]) / scales.displacement
     };
     d.interior().iter().zip(multiplier).map(touches).collect()
 }
