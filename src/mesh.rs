@@ -12,6 +12,7 @@ mod refine;
 pub(crate) mod samples;
 mod topology;
 mod triangulation;
+mod views;
 
 pub use ancestry::Parents;
 pub use check::{MeshError, MeshQuality};
@@ -26,6 +27,7 @@ pub(crate) use read::gmsh_nodes;
 pub use read::{GmshMesh, ReadError};
 pub use refine::{Bisection, MeshFamily, Refinement};
 pub use triangulation::{Mesh, VertexKind};
+pub use views::{View, ViewError, ViewPlace, Views};
 
 #[cfg(feature = "cli")]
 pub(crate) use generate::MAX_VERTICES;

@@ -2,7 +2,7 @@
 
 use super::error::{StackError, known};
 use crate::fem::integrals_on;
-use crate::mesh::{HalfEdge, HalfEdges, Mesh, VertexKind};
+use crate::mesh::{HalfEdge, HalfEdges, Mesh, VertexKind, View, ViewPlace};
 use crate::problem::{Field, Function};
 
 /// How data are integrated over a triangle.
@@ -55,7 +55,7 @@ fn divide<'f>(
         let region = groups.region(name).ok_or_else(|| StackError::UnknownRegion {
             datum: datum.into(),
             name: name.clone(),
-            known: known(groups.regions(), "region"),
+            known: known(groups.regions().iter().map(String::as_str), "region"),
         })?;
         for t in region {
             if part_of[t] != NOBODY {
@@ -105,6 +105,37 @@ fn check_length(datum: &str, found: usize, expected: usize, of: &'static str) ->
     Err(StackError::Length { datum: datum.into(), found, expected, of })
 }
 
+/// The data view of this name.
+fn view<'m>(mesh: &'m Mesh, name: &str, datum: &str) -> Result<&'m View, StackError> {
+    let (datum, views) = (datum.to_owned(), mesh.views());
+    match views.get(name) {
+        Some(Ok(view)) => Ok(view),
+        Some(Err(why)) => Err(StackError::UselessView { datum, name: name.into(), why: why.into() }),
+        None => Err(StackError::UnknownView {
+            datum,
+            name: name.into(),
+            known: known(views.names(), "data view"),
+        }),
+    }
+}
+
+/// The values of a view at vertices, or on triangles.
+fn values_of(
+    mesh: &Mesh,
+    view: &View,
+    places: &[usize],
+    [name, datum]: [&str; 2],
+) -> Result<Vec<f64>, StackError> {
+    let missing = |k: usize| {
+        let (place, vertex, point) = match view.place() {
+            ViewPlace::Vertices => (format!("vertex {k}"), Some(k), mesh.points()[k]),
+            ViewPlace::Triangles => (format!("triangle {k}"), None, barycentre(mesh, k)),
+        };
+        StackError::NoValue { datum: datum.into(), name: name.into(), place, vertex, point }
+    };
+    places.iter().map(|&k| view.value(k).ok_or_else(|| missing(k))).collect()
+}
+
 /// A field on the triangles of a piece.
 enum OnTriangles {
     /// One value each.
@@ -122,6 +153,12 @@ impl Piece<'_> {
     ) -> Result<OnTriangles, StackError> {
         let Self { field, triangles } = self;
         let third = |t: usize| mesh.triangle_area(t) / 3.0;
+        if let Field::View(name) = field {
+            let view = view(mesh, name, datum)?;
+            if view.place() == ViewPlace::Triangles {
+                return Ok(OnTriangles::Values(values_of(mesh, view, triangles, [name, datum])?));
+            }
+        }
         Ok(match (*field, rule) {
             (Field::Everywhere(Function::Constant(value)), _) => {
                 OnTriangles::Values(vec![*value; triangles.len()])
@@ -136,7 +173,7 @@ impl Piece<'_> {
                     integrals.map_err(|source| StackError::Evaluation { datum: datum.into(), source })?,
                 )
             }
-            (Field::PerVertex(_), IntegrationRule::Quadrature) => {
+            (Field::PerVertex(_) | Field::View(_), IntegrationRule::Quadrature) => {
                 let corners = self.at_corners(mesh, datum)?;
                 let integrals = |(&t, at): (&usize, [f64; 3])| {
                     let sum = at.iter().sum::<f64>();
@@ -244,6 +281,13 @@ pub(super) fn at_vertices(
             Ok(vertices.iter().map(|&a| values[a]).collect())
         }
         Field::PerTriangle(_) => Err(StackError::NotAtVertices { datum: datum.into() }),
+        Field::View(name) => {
+            let view = view(mesh, name, datum)?;
+            if view.place() == ViewPlace::Triangles {
+                return Err(StackError::NotAtVertices { datum: datum.into() });
+            }
+            values_of(mesh, view, vertices, [name, datum])
+        }
         Field::ByRegion { .. } => {
             let mut strictest = vec![None::<f64>; mesh.points().len()];
             let mut is_wanted = vec![false; mesh.points().len()];

@@ -129,11 +129,9 @@ impl Groups {
             scanner.skip_blank();
             let dimension = if with_dimensions { Some(read_dimension(scanner)?) } else { None };
             let tag: i32 = scanner.text_number("the tag of a physical group")?;
-            // As Gmsh has it: what stands between the first quotation mark and the next one, or the end of the line.
-            let line = String::from_utf8_lossy(scanner.rest_of_line());
-            let name = line.split('"').nth(1).unwrap_or("").trim_end_matches('\r');
+            let name = scanner.quoted();
             if !name.is_empty() {
-                self.names.insert((dimension, u64::from(tag.unsigned_abs())), name.into());
+                self.names.insert((dimension, u64::from(tag.unsigned_abs())), name);
             }
         }
         Ok(())

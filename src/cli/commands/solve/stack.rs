@@ -16,7 +16,7 @@ use crate::cli::run::files::{MEMBRANES, Part, SOLUTION, SUMMARY};
 use crate::cli::run::folder::Folder;
 use crate::cli::run::pictures::Pictures;
 use crate::cli::run::progress::Progress;
-use crate::cli::run::setup::{Setup, options, stack_solver, unused_groups};
+use crate::cli::run::setup::{Setup, options, stack_solver};
 use crate::cli::run::watch::Watch;
 use crate::cli::terminal::{fields, fixed, print, wrapped};
 use crate::discretization::StackDiscretization;
@@ -59,7 +59,7 @@ pub(super) fn run(
     drop(progress);
     if !arguments.case.quiet {
         let table = table(&summary, solution.statistics().polish, folder.path(), pictures);
-        print(&(table + &unused_groups(&setup.groups)))?;
+        print(&(table + &setup.notes))?;
     }
     Ok(())
 }
