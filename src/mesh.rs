@@ -20,7 +20,7 @@ pub use dual::{DualMesh, SubTriangulation};
 pub use generate::{
     GenerateError, MeshSize, Pattern, disk, estimated_vertices, generate, l_shape, polygon, rectangle,
 };
-pub use groups::Groups;
+pub use groups::{Groups, Names};
 pub use naming::GroupError;
 #[cfg(feature = "cli")]
 pub(crate) use read::gmsh_nodes;

@@ -77,9 +77,9 @@ mod tests {
     #[test]
     fn groups_that_are_not_used_are_one_line_of_80_columns() {
         let group =
-            |tag: u64| PhysicalGroup { dimension: 1, tag, name: (tag < 3).then(|| "an\nedge".into()) };
+            |tag: u32| PhysicalGroup { dimension: 1, tag, name: (tag < 3).then(|| "an\nedge".into()) };
         let line =
-            |tags: std::ops::Range<u64>| unused("physical groups", &tags.map(group).collect::<Vec<_>>());
+            |tags: std::ops::Range<u32>| unused("physical groups", &tags.map(group).collect::<Vec<_>>());
         assert_eq!(line(0..0), "");
         assert_eq!(line(2..4), "  physical groups not used: an\\nedge, curves 3\n");
         let many = line(3..1003);
@@ -98,7 +98,7 @@ mod tests {
         let told = FileNotes::new(vec![], mesh.views(), notes, &problem).to_string();
         assert_eq!(
             told,
-            "  2 quadrangles are cut in two, along the shorter diagonal\n  view `load`: 3 values at what is no vertex or triangle of the mesh are left\n    out\n  data views not used: spare\n"
+            "  quadrangles, cut in two along the shorter diagonal: 2\n  values of the view `load` at what is no vertex or triangle of the mesh, left\n    out: 3\n  data views not used: spare\n"
         );
     }
 }

@@ -55,7 +55,7 @@ fn divide<'f>(
         let region = groups.region(name).ok_or_else(|| StackError::UnknownRegion {
             datum: datum.into(),
             name: name.clone(),
-            known: known(groups.regions().iter().map(String::as_str), "region"),
+            known: known(groups.regions().iter(), "region"),
         })?;
         for t in region {
             if part_of[t] != NOBODY {

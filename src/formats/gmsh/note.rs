@@ -41,10 +41,10 @@ impl fmt::Display for GmshNote {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::HigherOrder { elements } => {
-                write!(f, "{} elements of higher order are read by their corners", grouped(*elements))
+                write!(f, "elements of higher order, read by their corners: {}", grouped(*elements))
             }
             Self::Quadrangles { quadrangles } => {
-                write!(f, "{} quadrangles are cut in two, along the shorter diagonal", grouped(*quadrangles))
+                write!(f, "quadrangles, cut in two along the shorter diagonal: {}", grouped(*quadrangles))
             }
             Self::Level { z } => write!(f, "the mesh lies in the plane z = {}: x and y are kept", Number(*z)),
             Self::Plane { axes: [x, y] } => {
@@ -57,7 +57,7 @@ impl fmt::Display for GmshNote {
             }
             Self::ValuesLeftOut { view, values } => write!(
                 f,
-                "view `{}`: {} values at what is no vertex or triangle of the mesh are left out",
+                "values of the view `{}` at what is no vertex or triangle of the mesh, left out: {}",
                 excerpt(view),
                 grouped(*values)
             ),
@@ -100,11 +100,11 @@ mod tests {
         let notes = [
             (
                 GmshNote::HigherOrder { elements: 1234 },
-                "1,234 elements of higher order are read by their corners",
+                "elements of higher order, read by their corners: 1,234",
             ),
             (
                 GmshNote::Quadrangles { quadrangles: 5 },
-                "5 quadrangles are cut in two, along the shorter diagonal",
+                "quadrangles, cut in two along the shorter diagonal: 5",
             ),
             (GmshNote::Level { z: 0.25 }, "the mesh lies in the plane z = 0.25: x and y are kept"),
             (
@@ -113,7 +113,7 @@ mod tests {
             ),
             (
                 GmshNote::ValuesLeftOut { view: "p".into(), values: 3 },
-                "view `p`: 3 values at what is no vertex or triangle of the mesh are left out",
+                "values of the view `p` at what is no vertex or triangle of the mesh, left out: 3",
             ),
         ];
         for (note, text) in notes {

@@ -158,10 +158,10 @@ fn what_was_done_to_a_mesh_is_noted() {
     assert_eq!(notes(file!("rectangle_41_binary")), [""; 0]);
     assert_eq!(notes(file!("height_41")), ["the mesh lies in the plane z = 1000.1: x and y are kept"]);
     for quadrangles in [file!("quadrangles_41"), file!("quadrangles_22_binary")] {
-        assert_eq!(notes(quadrangles), ["13 quadrangles are cut in two, along the shorter diagonal"]);
+        assert_eq!(notes(quadrangles), ["quadrangles, cut in two along the shorter diagonal: 13"]);
     }
     for curved in [file!("second_order_41"), file!("second_order_22_binary")] {
-        assert_eq!(notes(curved), ["22 elements of higher order are read by their corners"]);
+        assert_eq!(notes(curved), ["elements of higher order, read by their corners: 22"]);
     }
 }
 

@@ -25,7 +25,7 @@ pub(super) fn pair(mut section: Section) -> Result<ContactProblem, Failure> {
     Ok(problem)
 }
 
-/// A number or an expression. Data views are for [[membrane]].
+/// A number or an expression. Data views are for the longer form.
 fn function(value: &Value) -> Result<Function, String> {
     if field::names_view(value) {
         return Err(

@@ -260,13 +260,14 @@ fn a_data_view_may_stand_for_every_field() {
     assert_eq!(problem.views(), ["stiff", "pressure", "rig", "soil", "top", "ground"]);
     assert!(matches!(&problem.membranes()[0].load, Field::View(name) if name == "pressure"));
     assert_eq!(problem.regions(), ["rubber", "steel"]);
-    for (key, value) in [("load", "[{ view = \"p\" }, 1]"), ("height", "{ view = \"p\" }")] {
-        let pair = format!("[membranes]\ntension = [1, 2]\nload = [1, 2]\n[domain]\nmesh = \"a.msh\"\n");
-        let pair = if key == "load" {
-            pair.replace("load = [1, 2]", &format!("load = {value}"))
-        } else {
-            pair.replace("[domain]", &format!("{key} = {value}\n[domain]"))
-        };
+    const PAIR: &str =
+        "[membranes]\ntension = [1, 2]\nload = [1, 2]\nheight = 1\n[domain]\nmesh = \"a.msh\"\n";
+    assert!(read(PAIR).is_ok());
+    for (key, from, to) in [
+        ("load[1]", "load = [1, 2]", "load = [{ view = \"p\" }, 2]"),
+        ("height", "height = 1", "height.view = \"p\""),
+    ] {
+        let pair = PAIR.replace(from, to);
         let message = read(&pair).unwrap_err();
         assert!(
             message.contains(&format!("`membranes.{key}")) && message.contains("write [[membrane]]"),
