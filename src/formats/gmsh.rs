@@ -68,6 +68,19 @@ pub struct GmshTriangulation {
 /// up to [`FLATNESS`], or a quadrangle cannot be cut in two. Memory and time
 /// stay proportional to the length of `bytes`, whatever the file declares.
 pub fn parse(bytes: &[u8]) -> Result<GmshTriangulation, GmshError> {
+    read_sections(bytes)?.triangulation()
+}
+
+/// What the sections of a file say.
+struct Sections<'a> {
+    scanner: Scanner<'a>,
+    nodes: Nodes,
+    elements: Elements,
+    groups: Groups,
+    views: Views,
+}
+
+fn read_sections(bytes: &[u8]) -> Result<Sections<'_>, GmshError> {
     let (mut scanner, version) = read_format(bytes)?;
     let mut groups = Groups::default();
     let mut views = Views::default();
@@ -106,44 +119,40 @@ pub fn parse(bytes: &[u8]) -> Result<GmshTriangulation, GmshError> {
         }
         scanner.close_section()?;
     }
-    let mut nodes = nodes.ok_or(GmshError::MissingNodes)?.content;
-    let mut elements = elements.ok_or(GmshError::MissingElements)?.content;
-    if elements.cells.is_empty() {
-        return Err(GmshError::NoTriangle { others: elements.others });
+    let nodes = nodes.ok_or(GmshError::MissingNodes)?.content;
+    let elements = elements.ok_or(GmshError::MissingElements)?.content;
+    Ok(Sections { scanner, nodes, elements, groups, views })
+}
+
+impl Sections<'_> {
+    /// The plane triangles, and what belongs to them.
+    fn triangulation(self) -> Result<GmshTriangulation, GmshError> {
+        let Self { scanner, mut nodes, mut elements, groups, views } = self;
+        if elements.cells.is_empty() {
+            return Err(GmshError::NoTriangle { others: elements.others });
+        }
+        elements.drop_between(&mut nodes);
+        let Elements { cells, tags, curved, labels, lines, strays, repetitions, .. } = elements;
+        let plane = flatten(&mut nodes, || cells.iter().flat_map(corners).map(|&a| a as usize))?;
+        let cells_of_tags = views.are_on_elements().then(|| CellsOfTags::new(&tags, &repetitions));
+        let cut = cut(&cells, tags, &nodes.points)?;
+        let of_element = |tag| {
+            let cell = cells_of_tags.as_ref().and_then(|cells| cells.cell(tag));
+            cell.map_or(0..0, |cell| cut.of_cell(cell))
+        };
+        let views = views.on_mesh(|node| nodes.index(node).map(|a| a as u32), of_element);
+        let (groups, mut members) = groups.of_elements(&scanner, labels, lines, &strays)?;
+        let halves = |(cell, part)| cut.of_cell(cell).map(move |t| (t, part));
+        members.triangles = members.triangles.into_iter().flat_map(halves).collect();
+        let quadrangles = cut.quadrangles();
+        let curved = (curved > 0).then_some(GmshNote::HigherOrder { elements: curved });
+        let quadrangles = (quadrangles > 0).then_some(GmshNote::Quadrangles { quadrangles });
+        let left_out = views.iter().filter_map(GmshView::left_out);
+        let notes = [curved, quadrangles, plane].into_iter().flatten().chain(left_out).collect();
+        let (triangles, element_tags) = (cut.triangles, cut.tags);
+        let Nodes { points, tags: node_tags, .. } = nodes;
+        Ok(GmshTriangulation { points, triangles, node_tags, element_tags, groups, members, views, notes })
     }
-    elements.drop_between(&mut nodes);
-    let Elements { cells, tags, curved, labels, lines, strays, repetitions, .. } = elements;
-    let used = || cells.iter().flat_map(corners).map(|&a| a as usize);
-    let plane = flatten(&mut nodes, used)?;
-    let cells_of_tags = views.are_on_elements().then(|| CellsOfTags::new(&tags, &repetitions));
-    let cut = cut(&cells, tags, &nodes.points)?;
-    let triangles = |element| {
-        let cell = cells_of_tags.as_ref().and_then(|cells| cells.cell(element));
-        cell.map_or(0..0, |cell| cut.of_cell(cell))
-    };
-    let views = views.on_mesh(|node| nodes.index(node).map(|a| a as u32), triangles);
-    let (groups, mut members) = groups.of_elements(&scanner, labels, lines, &strays)?;
-    members.triangles = members
-        .triangles
-        .into_iter()
-        .flat_map(|(cell, part)| cut.of_cell(cell).map(move |t| (t, part)))
-        .collect();
-    let curved = (curved > 0).then_some(GmshNote::HigherOrder { elements: curved });
-    let quadrangles =
-        (cut.quadrangles() > 0).then(|| GmshNote::Quadrangles { quadrangles: cut.quadrangles() });
-    let left_out = views.iter().filter_map(GmshView::left_out);
-    let notes = [curved, quadrangles, plane].into_iter().flatten().chain(left_out).collect();
-    let Nodes { points, tags: node_tags, .. } = nodes;
-    Ok(GmshTriangulation {
-        points,
-        triangles: cut.triangles,
-        node_tags,
-        element_tags: cut.tags,
-        groups,
-        members,
-        views,
-        notes,
-    })
 }
 
 /// A section that Gmsh writes again before each view that it appends to a file.

@@ -161,7 +161,7 @@ fn a_file_that_does_not_fit_into_the_memory_is_not_read() {
     let refused = run(folder.path(), "solve case.toml --memory-limit 0.5");
     assert_eq!(refused.code, Some(2));
     assert!(
-        refused.stderr.contains("takes about 15.00 GiB of memory, and 0.50 are available"),
+        refused.stderr.contains("takes about 18.00 GiB of memory, and 0.50 are available"),
         "{refused:?}"
     );
 

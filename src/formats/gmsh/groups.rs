@@ -217,11 +217,12 @@ fn parts_of_entities(
     };
     entities.sort_unstable_by_key(Entity::key);
     let (mut keys, mut members) = (Keys::new(), GroupMembers::default());
-    // An entity may be given twice.
+    let tags = |entity: &Entity| &tags[entity.start as usize..entity.end as usize];
+    // An entity may be given twice, as in a file that repeats the mesh before each view.
     for same in entities.chunk_by(|one, other| one.key() == other.key()) {
-        for &Entity { dimension, start, end, .. } in same {
-            let tags = &tags[start as usize..end as usize];
-            members.carried.extend(tags.iter().map(|&tag| group(dimension, tag)));
+        let others = same[1..].iter().filter(|entity| tags(entity) != tags(&same[0]));
+        for entity in same[..1].iter().chain(others) {
+            members.carried.extend(tags(entity).iter().map(|&tag| group(entity.dimension, tag)));
         }
         members.ends.push(members.carried.len() as u32);
         keys.push(same[0].key());

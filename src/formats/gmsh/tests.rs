@@ -2,11 +2,12 @@
 
 mod broken;
 mod handmade;
+mod shapes;
 mod views;
 
 use std::collections::HashSet;
 
-use super::{GmshNote, GmshTriangulation, GmshView, parse};
+use super::{GmshNote, GmshTriangulation, GmshView, ViewFault, ViewPlace, parse};
 
 macro_rules! file {
     ($name:literal) => {
@@ -76,6 +77,11 @@ const VALID: &[Valid] = &[
     valid!("quadrangles_22_binary", 20, 26, RECTANGLE, 1),
     valid!("second_order_41", 12, 14, RECTANGLE, 1),
     valid!("second_order_22_binary", 12, 14, RECTANGLE, 1),
+    valid!("views_22_ascii", 15, 18, RECTANGLE, 1),
+    valid!("views_22_binary", 15, 18, RECTANGLE, 1),
+    valid!("views_41_ascii", 15, 18, RECTANGLE, 1),
+    valid!("views_41_binary", 15, 18, RECTANGLE, 1),
+    valid!("inclined_41", 15, 18, RECTANGLE, 1),
     valid!("partitioned_22", 15, 18, RECTANGLE, 1),
     valid!("partitioned_41_ascii", 15, 18, RECTANGLE, 1),
     valid!("partitioned_41_binary", 15, 18, RECTANGLE, 1),
@@ -152,11 +158,38 @@ fn all_encodings_give_the_same_triangulation() {
     }
 }
 
+/// Views as Gmsh appends them to one file.
+#[test]
+fn views_are_the_same_in_every_encoding() {
+    for file in VALID.iter().filter(|file| file.name.starts_with("views")) {
+        let mesh = read(file.bytes);
+        let [history, number, pressure, wind] = &mesh.views[..] else { panic!("{:?}", mesh.views) };
+        let names = [history, number, pressure, wind].map(|view| view.name.as_str());
+        assert_eq!(names, ["history", "number", "pressure", "wind"], "{}", file.name);
+        assert_eq!(history.data, Err(ViewFault::Steps { steps: [0, 1] }));
+        assert_eq!(wind.data, Err(ViewFault::Components { components: 3 }));
+        let pressure = pressure.data.as_ref().expect("one number for each node");
+        assert_eq!((pressure.place, pressure.values.len(), pressure.left_out), (ViewPlace::Vertices, 15, 0));
+        assert!(
+            pressure
+                .values
+                .iter()
+                .all(|&(k, p)| (p + 10.0 * mesh.points[k as usize][0]).abs() < 10.0 * PRINTED)
+        );
+        let number = number.data.as_ref().expect("one number for each element");
+        assert_eq!((number.place, number.values.len(), number.left_out), (ViewPlace::Triangles, 18, 14));
+        assert!(number.values.iter().all(|&(t, tag)| tag == mesh.element_tags[t as usize] as f64));
+    }
+}
+
 #[test]
 fn what_was_done_to_a_mesh_is_noted() {
     let notes = |bytes: &[u8]| read(bytes).notes.iter().map(GmshNote::to_string).collect::<Vec<_>>();
     assert_eq!(notes(file!("rectangle_41_binary")), [""; 0]);
     assert_eq!(notes(file!("height_41")), ["the mesh lies in the plane z = 1000.1: x and y are kept"]);
+    let inclined =
+        "the mesh lies in a plane in space; its coordinates there: x is now x, y is now 0.8 y + 0.6 z";
+    assert_eq!(notes(file!("inclined_41")), [inclined]);
     for quadrangles in [file!("quadrangles_41"), file!("quadrangles_22_binary")] {
         assert_eq!(notes(quadrangles), ["quadrangles, cut in two along the shorter diagonal: 13"]);
     }

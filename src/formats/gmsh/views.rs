@@ -162,7 +162,6 @@ impl Views {
             for component in 0..head.components {
                 let value = scanner.double("a value of a view")?;
                 if component == 0 {
-                    view.blame(!value.is_finite(), ViewFault::NotFinite { tag, value });
                     view.add(tag, value);
                 }
             }
@@ -225,6 +224,13 @@ fn values(
     mut entries: Vec<(u64, f64)>,
     at: impl Fn(u64) -> Range<u32>,
 ) -> Result<ViewData, ViewFault> {
+    // Gmsh has values of what it does not save, in MSH 2 all of them with the tag 0.
+    let all = entries.len();
+    entries.retain(|&(tag, _)| !at(tag).is_empty());
+    let left_out = all - entries.len();
+    if let Some(&(tag, value)) = entries.iter().find(|(_, value)| !value.is_finite()) {
+        return Err(ViewFault::NotFinite { tag, value });
+    }
     // A stable sort: of two values of one tag, the first one of the file is named first.
     entries.sort_by_key(|(tag, _)| *tag);
     let twice = |pair: &&[(u64, f64)]| pair[0].0 == pair[1].0 && pair[0].1 != pair[1].1;
@@ -234,11 +240,8 @@ fn values(
     entries.dedup_by_key(|(tag, _)| *tag);
     let found: usize = entries.iter().map(|&(tag, _)| at(tag).len()).sum();
     let mut values = Vec::with_capacity(found);
-    let mut left_out = 0;
     for &(tag, value) in &entries {
-        let places = at(tag);
-        left_out += usize::from(places.is_empty());
-        values.extend(places.map(|k| (k, value)));
+        values.extend(at(tag).map(|k| (k, value)));
     }
     values.sort_by_key(|(k, _)| *k);
     // Two tags of one triangle: that of a surface in two groups, in MSH 2.
@@ -267,6 +270,7 @@ fn read_head(scanner: &mut Scanner) -> Result<Head, GmshError> {
     scanner.end_line()?;
     let mut name = None;
     for _ in 0..strings {
+        scanner.skip_lines();
         let text = scanner.quoted();
         name.get_or_insert(text);
     }
