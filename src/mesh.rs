@@ -12,6 +12,7 @@ mod refine;
 pub(crate) mod samples;
 mod topology;
 mod triangulation;
+mod views;
 
 pub use ancestry::Parents;
 pub use check::{MeshError, MeshQuality};
@@ -19,13 +20,14 @@ pub use dual::{DualMesh, SubTriangulation};
 pub use generate::{
     GenerateError, MeshSize, Pattern, disk, estimated_vertices, generate, l_shape, polygon, rectangle,
 };
-pub use groups::Groups;
+pub use groups::{Groups, Names};
 pub use naming::GroupError;
 #[cfg(feature = "cli")]
 pub(crate) use read::gmsh_nodes;
 pub use read::{GmshMesh, ReadError};
 pub use refine::{Bisection, MeshFamily, Refinement};
 pub use triangulation::{Mesh, VertexKind};
+pub use views::{View, ViewError, ViewPlace, Views};
 
 #[cfg(feature = "cli")]
 pub(crate) use generate::MAX_VERTICES;

@@ -6,6 +6,7 @@ pub(super) mod folder;
 pub(super) mod input;
 pub(super) mod levels;
 pub(super) mod memory;
+mod notes;
 pub(super) mod pictures;
 pub(super) mod progress;
 pub(super) mod setup;

@@ -6,6 +6,7 @@ mod error;
 mod fields;
 mod membrane;
 mod obstacles;
+mod samples;
 mod scales;
 mod supports;
 #[cfg(test)]
@@ -26,9 +27,9 @@ use chain::{Layer, segments};
 pub use error::StackError;
 pub use fields::IntegrationRule;
 use fields::{POSITIVE, borders, means};
-pub(crate) use fields::{Samples, at_samples};
 use membrane::{MembraneData, connected_parts, profile};
 use obstacles::{check_order, obstacle};
+pub(crate) use samples::{Samples, at_samples};
 
 /// Displacements over vertices, one for each membrane from the top.
 pub type Displacements = Vec<Vec<f64>>;

@@ -48,10 +48,8 @@ impl ErrorBound {
         if d.rule() != IntegrationRule::Quadrature {
             return Err(NoBound::VertexRule);
         }
-        for (k, membrane) in d.problem().membranes().iter().enumerate() {
-            if !membrane.foundation.is_constant_on_triangles() {
-                return Err(NoBound::VaryingFoundation { membrane: k + 1 });
-            }
+        if let Some(membrane) = (1..=d.membranes()).find(|&i| !d.has_even_foundation(i)) {
+            return Err(NoBound::VaryingFoundation { membrane });
         }
         Self::with_actions(d, displacement, Actions::new(d, solution))
     }

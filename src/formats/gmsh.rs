@@ -1,6 +1,6 @@
-//! Reads the triangles of a Gmsh mesh: MSH 2.0 to 2.2 and 4.1, ASCII and binary in either byte order, and MSH 4.0 in ASCII.
+//! Reads the triangles and quadrangles of a Gmsh mesh: MSH 2.0 to 2.2 and 4.1, ASCII and binary in either byte order, and MSH 4.0 in ASCII.
 //!
-//! What the file says is checked here (indices, finite and flat coordinates); whether the triangles form a
+//! What the file says is checked here (indices, finite coordinates in one plane); whether the triangles form a
 //! valid triangulation is for the mesh made from them to decide. Format: Gmsh reference manual, "MSH file format".
 
 mod elements;
@@ -8,62 +8,84 @@ mod entities;
 mod error;
 mod groups;
 mod nodes;
+mod note;
 mod scanner;
 #[cfg(test)]
 mod tests;
 mod v2;
 mod v4;
+mod views;
 
 pub use error::{GmshError, Place};
 pub use groups::{GroupMembers, PhysicalGroup};
+pub use nodes::FLATNESS;
+pub use note::GmshNote;
+pub use views::{GmshView, ViewData, ViewFault, ViewPlace};
 
 use crate::text::excerpt;
-use elements::Elements;
+use elements::{CellsOfTags, Elements, corners, cut};
 use entities::{entities, partitioned_entities};
 use groups::Groups;
-use nodes::Nodes;
+use nodes::{Nodes, flatten};
 use scanner::{ByteOrder, Encoding, Scanner};
 use v4::Layout;
+use views::Views;
 
-/// Largest height of a node above the plane of the mesh, relative to the larger side of the box around the mesh.
+/// The triangles of a plane Gmsh mesh, in the order of the file.
 ///
-/// It is the relative accuracy at which Gmsh itself takes two points for one (`Geometry.Tolerance`).
-pub const FLATNESS: f64 = 1e-8;
-
-/// The triangles of a Gmsh mesh in a plane `z = constant`, as they stand in the file.
-///
-/// Points of the file are left out, and lines in no physical group. The nodes that only they use are kept.
+/// Quadrangles are cut in two, along the shorter of their diagonals (of those that lie inside). Of elements of higher order
+/// the corners are taken. Points of the file are left out, and lines in no physical group. The nodes that only they use are kept,
+/// those between the corners of elements of higher order are not. A mesh in a plane of space gets its coordinates in that plane.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GmshTriangulation {
-    /// `(x, y)` of every node, in the order of the file, also of nodes that no triangle uses.
+    /// The coordinates of every node in the plane, in the order of the file, also of nodes that no triangle uses.
     pub points: Vec<[f64; 2]>,
     /// The three vertices of every triangle, as indices into `points`.
     pub triangles: Vec<[usize; 3]>,
     /// The number that Gmsh gave to each node; as long as `points`, all different.
     pub node_tags: Vec<u64>,
-    /// The number that Gmsh gave to each triangle; as long as `triangles`.
+    /// The number that Gmsh gave to the element of each triangle; as long as `triangles`.
     pub element_tags: Vec<u64>,
     /// The physical groups that have a name or members, by dimension and tag, each once.
     pub groups: Vec<PhysicalGroup>,
     /// Which triangles and lines belong to which of `groups`.
     pub members: GroupMembers,
+    /// The data views, by name.
+    pub views: Vec<GmshView>,
+    /// What was done to make it a mesh of plane triangles.
+    pub notes: Vec<GmshNote>,
 }
 
 /// Reads a mesh from the bytes of a `.msh` file.
 ///
-/// What Gmsh reads is read: other sections, also before `$MeshFormat`, and lines between sections are skipped; the totals at
+/// What Gmsh reads is read: data views by name; the mesh once more before a view that was appended; other sections, also before `$MeshFormat`, and lines between sections are skipped; the totals at
 /// the head of the sections of MSH 4 may be wrong, the blocks count. A surface that is in several physical groups is written
 /// several times by MSH 2: each triangle is taken once, and belongs to all of them.
 ///
 /// # Errors
-/// When the file is no complete file of these versions, holds elements that are not triangles of three nodes (points and lines
-/// aside) or no triangle, names a node that does not exist (in a triangle, or a line of a physical group), or when the triangles are not [flat](FLATNESS). Memory and time
+/// When the file is no complete file of these versions, holds elements that are not points, lines, triangles or quadrangles, or
+/// no triangle or quadrangle, names a node that does not exist (as a corner, or in a line of a physical group), or when the mesh lies in no plane
+/// up to [`FLATNESS`], or a quadrangle cannot be cut in two. Memory and time
 /// stay proportional to the length of `bytes`, whatever the file declares.
 pub fn parse(bytes: &[u8]) -> Result<GmshTriangulation, GmshError> {
+    read_sections(bytes)?.triangulation()
+}
+
+/// What the sections of a file say.
+struct Sections<'a> {
+    scanner: Scanner<'a>,
+    nodes: Nodes,
+    elements: Elements,
+    groups: Groups,
+    views: Views,
+}
+
+fn read_sections(bytes: &[u8]) -> Result<Sections<'_>, GmshError> {
     let (mut scanner, version) = read_format(bytes)?;
     let mut groups = Groups::default();
-    let mut nodes = None;
-    let mut elements = None;
+    let mut views = Views::default();
+    let mut nodes: Option<Repeatable<Nodes>> = None;
+    let mut elements: Option<Repeatable<Elements>> = None;
     while let Some(section) = scanner.open_section()? {
         if !version.knows(section) {
             scanner.skip_section()?;
@@ -71,30 +93,73 @@ pub fn parse(bytes: &[u8]) -> Result<GmshTriangulation, GmshError> {
             continue;
         }
         scanner.end_line()?;
+        let start = scanner.index();
         match section {
-            "Elements" if elements.is_some() => return Err(scanner.repeated_section()),
-            "Elements" => {
-                let nodes = nodes.as_ref().ok_or(GmshError::MissingNodes)?;
-                elements = Some(version.elements(&mut scanner, nodes, &mut groups)?);
-            }
+            "Elements" => match &elements {
+                Some(elements) => scanner.skip_repeated(elements.body)?,
+                None => {
+                    let nodes = &nodes.as_ref().ok_or(GmshError::MissingNodes)?.content;
+                    let content = version.elements(&mut scanner, nodes, &mut groups)?;
+                    elements = Some(Repeatable { content, body: scanner.body_since(start) });
+                }
+            },
             "PhysicalNames" => groups.read_names(&mut scanner, version.names_have_dimensions())?,
             "Entities" => entities(&mut scanner, version.layout(), &mut groups)?,
             "PartitionedEntities" => partitioned_entities(&mut scanner, version.layout(), &mut groups)?,
-            _ if nodes.is_some() => return Err(scanner.repeated_section()),
-            _ => nodes = Some(version.nodes(&mut scanner, section)?),
+            "NodeData" => views.read(&mut scanner, ViewPlace::Vertices)?,
+            "ElementData" => views.read(&mut scanner, ViewPlace::Triangles)?,
+            "ElementNodeData" => views.skip_element_nodes(&mut scanner)?,
+            _ => match &nodes {
+                Some(nodes) => scanner.skip_repeated(nodes.body)?,
+                None => {
+                    let content = version.nodes(&mut scanner, section)?;
+                    nodes = Some(Repeatable { content, body: scanner.body_since(start) });
+                }
+            },
         }
         scanner.close_section()?;
     }
-    let nodes = nodes.ok_or(GmshError::MissingNodes)?;
-    let Elements { triangles, tags, others, labels, lines, strays } =
-        elements.ok_or(GmshError::MissingElements)?;
-    if triangles.is_empty() {
-        return Err(GmshError::NoTriangle { others });
+    let nodes = nodes.ok_or(GmshError::MissingNodes)?.content;
+    let elements = elements.ok_or(GmshError::MissingElements)?.content;
+    Ok(Sections { scanner, nodes, elements, groups, views })
+}
+
+impl Sections<'_> {
+    /// The plane triangles, and what belongs to them.
+    fn triangulation(self) -> Result<GmshTriangulation, GmshError> {
+        let Self { scanner, mut nodes, mut elements, groups, views } = self;
+        if elements.cells.is_empty() {
+            return Err(GmshError::NoTriangle { others: elements.others });
+        }
+        elements.drop_between(&mut nodes);
+        let Elements { cells, tags, curved, labels, lines, strays, repetitions, .. } = elements;
+        let plane = flatten(&mut nodes, || cells.iter().flat_map(corners).map(|&a| a as usize))?;
+        let cells_of_tags = views.are_on_elements().then(|| CellsOfTags::new(&tags, &repetitions));
+        let cut = cut(&cells, tags, &nodes.points)?;
+        let of_element = |tag| {
+            let cell = cells_of_tags.as_ref().and_then(|cells| cells.cell(tag));
+            cell.map_or(0..0, |cell| cut.of_cell(cell))
+        };
+        let views = views.on_mesh(|node| nodes.index(node).map(|a| a as u32), of_element);
+        let (groups, mut members) = groups.of_elements(&scanner, labels, lines, &strays)?;
+        let halves = |(cell, part)| cut.of_cell(cell).map(move |t| (t, part));
+        members.triangles = members.triangles.into_iter().flat_map(halves).collect();
+        let quadrangles = cut.quadrangles();
+        let curved = (curved > 0).then_some(GmshNote::HigherOrder { elements: curved });
+        let quadrangles = (quadrangles > 0).then_some(GmshNote::Quadrangles { quadrangles });
+        let left_out = views.iter().filter_map(GmshView::left_out);
+        let notes = [curved, quadrangles, plane].into_iter().flatten().chain(left_out).collect();
+        let (triangles, element_tags) = (cut.triangles, cut.tags);
+        let Nodes { points, tags: node_tags, .. } = nodes;
+        Ok(GmshTriangulation { points, triangles, node_tags, element_tags, groups, members, views, notes })
     }
-    check_flat(&nodes, &triangles)?;
-    let Nodes { points, tags: node_tags, .. } = nodes;
-    let (groups, members) = groups.of_elements(&scanner, labels, lines, &strays)?;
-    Ok(GmshTriangulation { points, triangles, node_tags, element_tags: tags, groups, members })
+}
+
+/// A section that Gmsh writes again before each view that it appends to a file.
+struct Repeatable<'a, T> {
+    content: T,
+    /// What stands in it.
+    body: &'a [u8],
 }
 
 /// The layouts of the sections.
@@ -123,6 +188,7 @@ impl Version {
     fn knows(self, section: &str) -> bool {
         match section {
             "Nodes" | "Elements" | "PhysicalNames" => true,
+            "NodeData" | "ElementData" | "ElementNodeData" => true,
             "ParametricNodes" => matches!(self, Self::V20 | Self::V21),
             "Entities" | "PartitionedEntities" => matches!(self, Self::V40 | Self::V41),
             _ => false,
@@ -205,22 +271,4 @@ fn read_format(bytes: &[u8]) -> Result<(Scanner<'_>, Version), GmshError> {
     }
     scanner.close_section()?;
     Ok((scanner, version))
-}
-
-/// Demands that the nodes of the triangles lie in one plane `z = constant`.
-fn check_flat(nodes: &Nodes, triangles: &[[usize; 3]]) -> Result<(), GmshError> {
-    let used = || triangles.iter().flatten().copied();
-    let side = |axis: usize| {
-        let bounds = used().map(|k| nodes.points[k][axis]);
-        let (low, high) =
-            bounds.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
-        // Scaled before the difference, which could overflow.
-        FLATNESS * high - FLATNESS * low
-    };
-    let tolerance = side(0).max(side(1));
-    let plane = nodes.heights[triangles[0][0]];
-    match used().find(|&k| (nodes.heights[k] - plane).abs() > tolerance) {
-        Some(k) => Err(GmshError::NotFlat { node: nodes.tags[k], height: nodes.heights[k], plane }),
-        None => Ok(()),
-    }
 }

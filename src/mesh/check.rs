@@ -10,7 +10,7 @@ mod size;
 mod tests;
 mod winding;
 
-use super::{Groups, Mesh, VertexKind};
+use super::{Groups, Mesh, VertexKind, Views};
 use crate::mesh::topology::{HalfEdge, HalfEdges};
 pub use error::MeshError;
 pub use quality::MeshQuality;
@@ -30,7 +30,7 @@ impl Mesh {
     /// Clockwise triangles are turned round. Vertices in no triangle are kept as [`VertexKind::Unused`]. No two triangles of
     /// the result overlap: they lie on opposite sides of inner edges, make at most one full turn around every vertex, and
     /// the boundary does not touch itself but at common vertices. No part of it has a name ([`Mesh::with_region`],
-    /// [`Mesh::with_curve`]). Takes linear time (the edges at one vertex are sorted among themselves, and boundary edges meet
+    /// [`Mesh::with_curve`]), and there are no data views. Takes linear time (the edges at one vertex are sorted among themselves, and boundary edges meet
     /// only those near them).
     ///
     /// # Errors
@@ -52,7 +52,14 @@ impl Mesh {
         for &a in boundary_edges.iter().flat_map(|edge| &edge.ends) {
             kind[a] = VertexKind::Boundary;
         }
-        Ok(Self { points, triangles, kind, ancestry: Vec::new(), groups: Groups::default() })
+        Ok(Self {
+            points,
+            triangles,
+            kind,
+            ancestry: Vec::new(),
+            groups: Groups::default(),
+            views: Views::default(),
+        })
     }
 }
 

@@ -1,12 +1,14 @@
 //! Named parts of a mesh.
 
 mod family;
+mod names;
 #[cfg(test)]
 mod tests;
 
 use std::ops::Range;
 
 pub(in crate::mesh) use family::Family;
+pub use names::Names;
 
 /// The named parts of a [`Mesh`](crate::mesh::Mesh): *regions* are sets of triangles, *curves* sets of edges, on the boundary
 /// or inside.
@@ -27,12 +29,12 @@ impl Groups {
     }
 
     /// The names of the regions, each once: in the order of a file, or in which they were given.
-    pub fn regions(&self) -> &[String] {
+    pub fn regions(&self) -> &Names {
         self.regions.names()
     }
 
     /// The names of the curves, likewise.
-    pub fn curves(&self) -> &[String] {
+    pub fn curves(&self) -> &Names {
         self.curves.names()
     }
 
@@ -85,7 +87,7 @@ impl Groups {
     /// Curves that overlap: their names, for each part of them the numbers of the names that it carries, and edges with their
     /// parts.
     pub(in crate::mesh) fn of_overlapping_curves(
-        names: Vec<String>,
+        names: Names,
         parts: impl IntoIterator<Item = Vec<usize>>,
         edges: impl IntoIterator<Item = ([usize; 2], usize)>,
     ) -> Self {

@@ -7,8 +7,9 @@ use std::path::Path;
 
 use thiserror::Error;
 
+use super::views::Views;
 use super::{Mesh, MeshError};
-use crate::formats::gmsh::{GmshError, GmshTriangulation, PhysicalGroup, parse};
+use crate::formats::gmsh::{GmshError, GmshNote, GmshTriangulation, PhysicalGroup, parse};
 use crate::formats::read_regular;
 use named::named_parts;
 
@@ -39,12 +40,14 @@ pub enum ReadError {
 pub struct GmshMesh {
     /// The mesh, its vertices in the order of the file. Its regions and curves are the physical groups of surfaces and curves;
     /// those without a name are called as they are printed: `curves 2`, `surfaces 1`. Lines that are no edges of triangles
-    /// are left out of their curves, which may be left empty.
+    /// are left out of their curves, which may be left empty. It has the data views of the file.
     pub mesh: Mesh,
     /// The number that Gmsh gave to each vertex. Shape: vertices.
     pub node_tags: Vec<u64>,
     /// The physical groups, by dimension and tag.
     pub groups: Vec<PhysicalGroup>,
+    /// What was done to make it a mesh of plane triangles.
+    pub notes: Vec<GmshNote>,
 }
 
 impl GmshMesh {
@@ -53,11 +56,13 @@ impl GmshMesh {
     /// # Errors
     /// [`ReadError::Mesh`]: no conforming triangulation.
     pub fn new(triangulation: GmshTriangulation) -> Result<Self, ReadError> {
-        let GmshTriangulation { points, triangles, node_tags, element_tags, groups, members } = triangulation;
+        let GmshTriangulation { points, triangles, node_tags, element_tags, groups, members, views, notes } =
+            triangulation;
         match Mesh::new(points, triangles) {
             Ok(mesh) => {
                 let named = named_parts(&mesh, &groups, members);
-                Ok(Self { mesh: mesh.with_groups(named), node_tags, groups })
+                let views = Views::of_file(views);
+                Ok(Self { mesh: mesh.with_groups(named).with_views(views), node_tags, groups, notes })
             }
             Err(source) => Err(ReadError::Mesh {
                 elements: with_tags(&source.triangles(), &element_tags),
@@ -79,7 +84,9 @@ impl GmshMesh {
 
 impl Mesh {
     /// Reads a Gmsh mesh: MSH 2.0 to 2.2 or 4.1, ASCII or binary, or 4.0 in ASCII, from a regular file. Vertices keep the order
-    /// of the file, and its groups their names. [`GmshMesh::read`] takes a limit, and also returns Gmsh's numbers and groups.
+    /// of the file, and its groups their names. Quadrangles are cut in two, elements of higher order taken by their corners, and a
+    /// plane in space gets coordinates of its own. [`GmshMesh::read`] takes a limit, and also returns Gmsh's numbers and groups,
+    /// and tells what was done.
     ///
     /// # Errors
     /// [`ReadError`]: unreadable, not such a file, or no conforming triangulation.

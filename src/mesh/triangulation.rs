@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::ancestry::Parents;
 use super::groups::Groups;
+use super::views::Views;
 use crate::geometry::{distance_sq, twice_signed_area};
 
 /// Where a vertex lies.
@@ -27,6 +28,7 @@ pub struct Mesh {
     pub(super) kind: Vec<VertexKind>,
     pub(super) ancestry: Vec<Arc<Parents>>,
     pub(super) groups: Groups,
+    pub(super) views: Views,
 }
 
 impl Mesh {
@@ -48,6 +50,11 @@ impl Mesh {
     /// The named regions and curves. Refinements inherit them.
     pub fn groups(&self) -> &Groups {
         &self.groups
+    }
+
+    /// The data views. Refinements inherit them.
+    pub fn views(&self) -> &Views {
+        &self.views
     }
 
     /// The corners of triangle `t`, counterclockwise.
@@ -108,6 +115,18 @@ impl Mesh {
     /// The same mesh, its parts named by `groups` in place of what they were called.
     pub(in crate::mesh) fn with_groups(self, groups: Groups) -> Self {
         Self { groups, ..self }
+    }
+
+    /// The same mesh with these views in place of those that it had.
+    pub(in crate::mesh) fn with_views(self, views: Views) -> Self {
+        Self { views, ..self }
+    }
+
+    /// The same mesh without the views that are not wanted: refinements have less to inherit.
+    #[cfg(feature = "cli")]
+    pub(crate) fn keeping_views(mut self, is_wanted: impl Fn(&str) -> bool) -> Self {
+        self.views.keep(is_wanted);
+        self
     }
 
     /// The ancestry of a refinement of this mesh.

@@ -21,6 +21,8 @@ pub enum Field {
     PerVertex(Arc<[f64]>),
     /// One value for each triangle of the mesh.
     PerTriangle(Arc<[f64]>),
+    /// The data view of this name that the mesh has, at its vertices or on its triangles.
+    View(String),
     /// Another field in each named region.
     ByRegion {
         /// The regions that have their own, and that.
@@ -54,24 +56,29 @@ impl Field {
         parts.iter().map(|(name, _)| name.as_str())
     }
 
+    /// The data view of this name, for example one of the mesh file: `$NodeData` at vertices, `$ElementData` on triangles. It is looked up
+    /// when the problem is posed on a mesh, and follows its refinements.
+    pub fn view(name: impl Into<String>) -> Self {
+        Self::View(name.into())
+    }
+
+    /// The names of the data views that it asks for.
+    pub fn views(&self) -> Vec<&str> {
+        match self {
+            Self::View(name) => vec![name],
+            Self::ByRegion { parts, elsewhere } => {
+                let fields = parts.iter().map(|(_, field)| field).chain(elsewhere.as_deref());
+                fields.flat_map(Self::views).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+
     /// The number, where it is the same everywhere and known without a mesh.
     pub fn constant(&self) -> Option<f64> {
         match self {
             Self::Everywhere(Function::Constant(value)) => Some(*value),
             _ => None,
-        }
-    }
-
-    /// Whether it has one value on each triangle of a mesh that has its regions.
-    pub(crate) fn is_constant_on_triangles(&self) -> bool {
-        match self {
-            Self::Everywhere(function) => matches!(function, Function::Constant(_)),
-            Self::PerVertex(_) => false,
-            Self::PerTriangle(_) => true,
-            Self::ByRegion { parts, elsewhere } => {
-                let mut fields = parts.iter().map(|(_, field)| field).chain(elsewhere.as_deref());
-                fields.all(Self::is_constant_on_triangles)
-            }
         }
     }
 
@@ -87,7 +94,7 @@ impl Field {
     pub(super) fn numbers(&self) -> Vec<f64> {
         match self {
             Self::Everywhere(Function::Constant(value)) => vec![*value],
-            Self::Everywhere(_) => Vec::new(),
+            Self::Everywhere(_) | Self::View(_) => Vec::new(),
             Self::PerVertex(values) | Self::PerTriangle(values) => values.to_vec(),
             Self::ByRegion { parts, elsewhere } => parts
                 .iter()
@@ -118,6 +125,9 @@ mod tests {
         );
         let field = field.elsewhere(5.0);
         assert_eq!((field.numbers().last(), field.constant()), (Some(&5.0), None));
+        let views =
+            Field::by_region([("a", Field::view("p")), ("b", 1.0.into())]).elsewhere(Field::view("q"));
+        assert_eq!((views.views(), views.numbers(), views.constant()), (vec!["p", "q"], vec![1.0], None));
         let everywhere = Field::from("x + 1".parse::<crate::problem::Expression>().unwrap());
         assert!(everywhere.names().next().is_none() && everywhere.numbers().is_empty());
         assert!(everywhere.function().is_some() && field.function().is_none());

@@ -103,4 +103,13 @@ impl Membrane {
     pub fn regions(&self) -> impl Iterator<Item = &str> {
         [&self.tension, &self.load, &self.foundation].into_iter().flat_map(Field::names)
     }
+    /// The names of the data views of the mesh that it asks for.
+    pub fn views(&self) -> impl Iterator<Item = &str> {
+        let supports = self.parts.iter().map(|(_, support)| support).chain([&self.elsewhere]);
+        let heights = supports.filter_map(|support| match support {
+            Support::Fixed(height) => Some(height),
+            Support::Free { .. } => None,
+        });
+        [&self.tension, &self.load, &self.foundation].into_iter().chain(heights).flat_map(Field::views)
+    }
 }

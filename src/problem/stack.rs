@@ -76,6 +76,12 @@ impl ContactProblem {
         each_once(self.membranes.iter().flat_map(Membrane::regions).chain(obstacles))
     }
 
+    /// The names of the data views of the mesh that its data ask for, each once.
+    pub fn views(&self) -> Vec<&str> {
+        let obstacles = [&self.ceiling, &self.floor].into_iter().flatten().flat_map(Field::views);
+        each_once(self.membranes.iter().flat_map(Membrane::views).chain(obstacles))
+    }
+
     /// The names of the curves that its data ask for, each once.
     pub fn curves(&self) -> Vec<&str> {
         each_once(self.membranes.iter().flat_map(Membrane::curves))
@@ -212,5 +218,17 @@ mod tests {
             .build()
             .unwrap();
         assert_eq!((problem.regions(), problem.curves()), (vec!["steel", "patch"], vec!["rim"]));
+        assert!(problem.views().is_empty());
+    }
+
+    #[test]
+    fn views_are_those_of_all_data() {
+        let view = Field::view;
+        let upper =
+            Membrane::new(view("t")).load(Field::by_region([("patch", view("f"))]).elsewhere(view("t")));
+        let lower = Membrane::new(1.0).foundation(view("c")).height_on("rim", view("g")).height(view("h"));
+        let stack =
+            ContactProblem::stack().membrane(upper).membrane(lower).ceiling(view("top")).floor(view("f"));
+        assert_eq!(stack.build().unwrap().views(), ["t", "f", "c", "g", "h", "top"]);
     }
 }

@@ -163,6 +163,38 @@ fn gmsh_files() -> Vec<(&'static str, Vec<u8>)> {
         ("sections that do not end", [V2.as_bytes(), b"$A\n", &b"\n$EndB".repeat(LONG / 6)].concat()),
         ("many sections", [V2.as_bytes(), &b"$A\n$EndA\n".repeat(LONG / 9)].concat()),
         ("a fan", text(fan(20_000))),
+        ("values", text(fan(3) + &view("NodeData", LONG / 4, 1, &"1 0\n".repeat(LONG / 4)))),
+        (
+            "values that grow",
+            text(
+                fan(3)
+                    + &(1..LONG / 16)
+                        .map(|k| view("NodeData", 1, 1, &format!("{k} 0\n")))
+                        .collect::<String>(),
+            ),
+        ),
+        (
+            "values that are not there",
+            text(fan(3) + &view("ElementData", LONG, 1, &"1 0\n".repeat(LONG / 8)) + &" ".repeat(LONG)),
+        ),
+        ("2^31 components", text(fan(3) + &view("NodeData", 1, i32::MAX, &"1 ".repeat(LONG / 2)))),
+        (
+            "views",
+            text(
+                fan(3)
+                    + &(0..LONG / 64)
+                        .map(|k| {
+                            view(
+                                &format!("NodeData\n1\n\"{k}\"\n0\n3\n0\n1\n0\n$EndNodeData\n$ElementData"),
+                                0,
+                                1,
+                                "",
+                            )
+                        })
+                        .collect::<String>(),
+            ),
+        ),
+        ("the mesh again and again", text((fan(2_000) + &view("NodeData", 0, 1, "")).repeat(20))),
         ("the same triangle", text(same_triangle(20_000))),
     ]
     .into_iter()
@@ -219,6 +251,12 @@ fn grouped_meshes() -> Vec<(&'static str, String)> {
             v4("0 0 0 0\n".into(), n, (1..=n).map(|k| format!("1 {} 1 1\n1 9 9\n", k % 2)).collect()),
         ),
         ("a thousand groups of a thousand triangles and edges", thousands(1000)),
+        (
+            "quadrangles",
+            v2(n, (1..=n).map(|k| format!("{k} 3 0 1 2 4 {}\n", [3, 5][k % 2])).collect())
+                .replace("3\n1 0 0 0", "5\n4 1 1 0\n5 -1 1 0\n1 0 0 0"),
+        ),
+        ("a node between corners again and again", v2(n, "1 8 0 1 2 3\n".repeat(n))),
     ]
 }
 
@@ -249,6 +287,12 @@ fn thousands(n: usize) -> String {
 /// Names of one letter, each of a group of its own.
 fn names(n: usize) -> String {
     (1..=n).map(|k| format!("1 {k} \"a\"\n")).collect()
+}
+
+/// A section of data of so many values.
+fn view(section: &str, values: usize, components: i32, records: &str) -> String {
+    let end = section.lines().last().unwrap_or(section).trim_start_matches('$');
+    format!("${section}\n1\n\"p\"\n0\n3\n0\n{components}\n{values}\n{records}$End{end}\n")
 }
 
 /// Nodes of a circle, triangles from its centre.

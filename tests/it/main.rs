@@ -12,6 +12,7 @@ mod cones;
 mod custom_backend;
 mod exact;
 mod folders;
+mod gmsh_data;
 mod hostile_numbers;
 mod hostile_records;
 mod invariance;

@@ -13,12 +13,22 @@ fn mesh() -> std::path::PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/gmsh/materials_41_ascii.msh")
 }
 
-/// A folder with the case file `case.toml` and the mesh `plate.msh`.
+/// A folder with the case file `case.toml` and the mesh `plate.msh`, which has data views where the case asks for some.
 fn folder_with(case: &str) -> TempDir {
     let folder = tempdir().unwrap();
     fs::write(folder.path().join("case.toml"), case).unwrap();
-    fs::copy(mesh(), folder.path().join("plate.msh")).unwrap();
+    let mut file = fs::read_to_string(mesh()).unwrap();
+    if case.contains("view =") {
+        file += &(view("pressure", "-15") + &view("ground", "-0.05"));
+    }
+    fs::write(folder.path().join("plate.msh"), file).unwrap();
     folder
+}
+
+/// A data view with one value at all nodes of the mesh.
+fn view(name: &str, value: &str) -> String {
+    let values: String = (1..=14).map(|node| format!("{node} {value}\n")).collect();
+    format!("$NodeData\n1\n\"{name}\"\n1\n0\n3\n0\n1\n14\n{values}$EndNodeData\n")
 }
 
 /// The summary of a case that is certified.
@@ -206,7 +216,7 @@ fn what_the_page_shows_in_five_lines_is_solved() {
     let recipes = page.split("## In five lines").nth(1).unwrap();
     let blocks: Vec<&str> =
         recipes.split("```toml\n").skip(1).map(|rest| rest.split("```").next().unwrap()).collect();
-    assert_eq!(blocks.len(), 9);
+    assert_eq!(blocks.len(), 10);
     for block in blocks {
         assert!(block.lines().count() <= 5, "{block}");
         let (_, summary) = solved(block);

@@ -70,6 +70,13 @@ impl CaseFile {
         }
         let problem = problem(&mut top, exact.as_ref())?;
         let (mesh, refine) = mesh(&mut top, exact.as_ref(), path)?;
+        if let (MeshSource::Generator { .. }, [view, ..]) = (&mesh, problem.views().as_slice()) {
+            let view = excerpt(view);
+            let remedy = "name the file by `domain.mesh`, or give a formula";
+            return Err(top.table_error(format!(
+                "the data view `{view}` has to be in a mesh file, but there is none: {remedy}"
+            )));
+        }
         let solver = solver(&mut top)?;
         top.finish()?;
         Ok(Self { title, problem, integration, exact, mesh, refine, solver })

@@ -18,7 +18,7 @@ use crate::cli::run::levels::{GOES_ON, KEPT, Levels, MEMORY, TIME, failure, sett
 use crate::cli::run::memory::Memory;
 use crate::cli::run::pictures::Pictures;
 use crate::cli::run::progress::Progress;
-use crate::cli::run::setup::{Setup, check_solver, options, solver, too_early, unused_groups};
+use crate::cli::run::setup::{Setup, check_solver, options, solver, too_early};
 use crate::cli::run::watch::Watch;
 use crate::cli::terminal::{note, print, wrapped};
 use crate::estimate::LoadWarning;
@@ -112,7 +112,7 @@ pub(crate) fn run(arguments: &AdaptArguments, watch: &Watch) -> Result<(), Failu
         let mut files = files(&pictures);
         files.retain(|name| !left_out.contains(name));
         let table = table(&setup.case.title, &levels, warnings, (folder.path(), &files), &left_out);
-        print(&(table + &unused_groups(&setup.groups)))?;
+        print(&(table + &setup.notes))?;
     }
     verdict(&setup.name, arguments, &stop, &levels)
 }

@@ -15,11 +15,10 @@ use crate::cli::run::folder::{Claim, Folder};
 use crate::cli::run::memory::Memory;
 use crate::cli::run::pictures::Pictures;
 use crate::cli::run::progress::Progress;
-use crate::cli::run::setup::{Setup, check_refinements, solver, unused_groups};
+use crate::cli::run::setup::{Setup, check_refinements, solver};
 use crate::cli::run::watch::Watch;
 use crate::cli::terminal::print;
 use crate::discretization::PairDiscretization;
-use crate::formats::gmsh::PhysicalGroup;
 use crate::mesh::{MAX_VERTICES, Mesh, gmsh_nodes};
 use crate::problem::ContactProblem;
 use crate::solver::SolverOptions;
@@ -38,13 +37,13 @@ pub(crate) fn run(arguments: &BenchArguments, watch: &Watch) -> Result<(), Failu
         None => bench.run_family(&arguments.sizes)?,
         Some(path) => bench.run_case(path.clone(), arguments)?,
     };
-    let Bench { title, rows, measured, groups, .. } = bench;
+    let Bench { title, rows, measured, notes, .. } = bench;
     let pictures = Pictures::new(&arguments.pictures, Clock::new(None));
     write_results(&folder, &title, &rows, &pictures)?;
     drop(progress);
     if !arguments.quiet {
         let table = table::table(&title, &rows, (folder.path(), &pictures.files(TIMES)));
-        print(&(table + &unused_groups(&groups)))?;
+        print(&(table + &notes))?;
     }
     if arguments.no_run || rows[..measured].iter().any(|row| row.certified) {
         return Ok(());
@@ -64,8 +63,8 @@ struct Bench<'a> {
     rows: Vec<Row>,
     measured: usize,
     memory: Memory,
-    /// What the mesh file of a case has that is not used: its physical groups. And Gmsh's numbers of its vertices.
-    groups: Vec<PhysicalGroup>,
+    /// What is to be told of the mesh file of a case, and Gmsh's numbers of its vertices.
+    notes: String,
     node_tags: Vec<u64>,
     progress: &'a Progress,
     watch: &'a Watch,
@@ -99,7 +98,7 @@ impl<'a> Bench<'a> {
             rows,
             measured: 0,
             memory,
-            groups: Vec::new(),
+            notes: String::new(),
             node_tags: Vec::new(),
             progress,
             watch,
@@ -167,10 +166,10 @@ impl<'a> Bench<'a> {
         let arguments = CaseArguments { path, refine: 0, memory_limit, quiet: false };
         let setup = Setup::new(&arguments, self.progress)?;
         setup.require_pair()?;
-        let Setup { name, id, case, mut family, groups, node_tags, .. } = setup;
+        let Setup { name, id, case, mut family, notes, node_tags, .. } = setup;
         let finest = check_refinements(&name, family.mesh().points().len() as f64, levels - 1)?;
         self.check_memory(&name, finest)?;
-        (self.groups, self.node_tags) = (groups, node_tags);
+        (self.notes, self.node_tags) = (notes, node_tags);
         self.title.clone_from(&case.title);
         self.options.tolerance = bench.tolerance.unwrap_or(case.solver.tolerance.or_default());
         let stem = arguments.path.file_stem().unwrap_or(arguments.path.as_os_str());

@@ -6,7 +6,7 @@ use crate::cli::args::CheckArguments;
 use crate::cli::case::{CaseFile, SolverName, SolverSettings};
 use crate::cli::failure::Failure;
 use crate::cli::run::progress::Progress;
-use crate::cli::run::setup::{Setup, check_solver, options, solver, unused_groups};
+use crate::cli::run::setup::{Setup, check_solver, options, solver};
 use crate::cli::run::watch::Watch;
 use crate::cli::terminal::{fixed, print, wrapped};
 use crate::discretization::{Discretization, PairDiscretization};
@@ -79,7 +79,7 @@ fn report(
             grouped(unknowns),
             setup.case.solver.tolerance.or_default()
         );
-        print(&(wrapped(&title, 2) + "\n" + &table(columns) + fluxes + &unused_groups(&setup.groups)))?;
+        print(&(wrapped(&title, 2) + "\n" + &table(columns) + fluxes + &setup.notes))?;
     }
     match columns.iter().filter(|column| column.must_certify).find_map(|column| column.result.as_ref().err())
     {

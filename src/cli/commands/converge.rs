@@ -13,7 +13,7 @@ use crate::cli::run::levels::{GOES_ON, KEPT, Levels, MEMORY, TIME, failure, sett
 use crate::cli::run::memory::Memory;
 use crate::cli::run::pictures::Pictures;
 use crate::cli::run::progress::Progress;
-use crate::cli::run::setup::{Setup, check_refinements, options, solver, too_early, unused_groups};
+use crate::cli::run::setup::{Setup, check_refinements, options, solver, too_early};
 use crate::cli::run::watch::Watch;
 use crate::cli::terminal::{note, print, wrapped};
 use crate::estimate::LoadWarning;
@@ -85,7 +85,7 @@ pub(crate) fn run(arguments: &ConvergeArguments, watch: &Watch) -> Result<(), Fa
     drop(progress);
     if !arguments.case.quiet {
         let table = table(&title, &levels, &warnings, (folder.path(), &drawn), &left_out);
-        print(&(table + &unused_groups(&setup.groups)))?;
+        print(&(table + &setup.notes))?;
     }
     stop.map_or(Ok(()), |why| {
         let (done, of) = (levels.len(), arguments.levels);

@@ -5,7 +5,7 @@ use crate::cli::failure::Failure;
 use crate::cli::run::files::{MTX, NPZ, Part, QPS};
 use crate::cli::run::folder::{Claim, Folder};
 use crate::cli::run::progress::Progress;
-use crate::cli::run::setup::{Setup, unused_groups};
+use crate::cli::run::setup::Setup;
 use crate::cli::run::watch::Watch;
 use crate::cli::terminal::print;
 use crate::discretization::Discretization;
@@ -44,7 +44,7 @@ pub(crate) fn run(arguments: &ExportArguments, watch: &Watch) -> Result<(), Fail
     }
     drop(progress);
     if !arguments.case.quiet {
-        print(&(written.join("\n") + "\n" + &unused_groups(&setup.groups)))?;
+        print(&(written.join("\n") + "\n" + &setup.notes))?;
     }
     Ok(())
 }

@@ -19,7 +19,7 @@ use crate::cli::run::files::{DUAL, FLUX, MEMBRANES, MESH, Part, SOLUTION, SUMMAR
 use crate::cli::run::folder::{Folder, Results};
 use crate::cli::run::pictures::Pictures;
 use crate::cli::run::progress::Progress;
-use crate::cli::run::setup::{Setup, check_solver, options, solver, too_early, unused_groups};
+use crate::cli::run::setup::{Setup, check_solver, options, solver, too_early};
 use crate::cli::run::watch::Watch;
 use crate::cli::terminal::print;
 use crate::discretization::{Discretization, PairDiscretization};
@@ -61,7 +61,7 @@ pub(crate) fn run(arguments: &SolveArguments, watch: &Watch) -> Result<(), Failu
                 let polish = bounded.solution.statistics().polish;
                 let files = files(&pictures, arguments.dual);
                 let table = table(&summary, polish, unloaded, folder.path(), files);
-                print(&(table + &unused_groups(&setup.groups)))?;
+                print(&(table + &setup.notes))?;
             }
             Ok(())
         }

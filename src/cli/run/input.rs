@@ -24,7 +24,7 @@ impl Input {
     fn bytes_per_byte(self) -> f64 {
         match self {
             Self::CaseFile => 330.0,
-            Self::Mesh => 6.0,
+            Self::Mesh => 12.0,
             Self::Rows => 48.0,
             Self::Arrays => 4.0,
         }
@@ -76,9 +76,9 @@ mod tests {
         let error = open(Input::Mesh, 0.5).unwrap_err();
         assert_eq!(
             error.to_string(),
-            "reading 104,857,600 bytes takes about 0.59 GiB of memory, and 0.50 are available: make a coarser mesh, or allow more with --memory-limit"
+            "reading 104,857,600 bytes takes about 1.17 GiB of memory, and 0.50 are available: make a coarser mesh, or allow more with --memory-limit"
         );
-        assert!(open(Input::Mesh, 0.6).is_ok() && open(Input::Arrays, 0.5).is_ok());
+        assert!(open(Input::Mesh, 1.2).is_ok() && open(Input::Arrays, 0.5).is_ok());
         assert!(open(Input::Rows, 0.6).is_err() && open(Input::CaseFile, 30.0).is_err());
     }
 }

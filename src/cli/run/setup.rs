@@ -1,26 +1,27 @@
 //! From a case file to a mesh, a discrete problem, and a solver.
 
-use std::collections::HashSet;
 use std::io::{self, Read};
 use std::path::Path;
 use std::time::Instant;
 
 use super::input::{self, Input};
 use super::memory::Memory;
+use super::notes::FileNotes;
 use super::progress::Progress;
 use crate::cli::args::CaseArguments;
 use crate::cli::case::{CaseFile, CaseId, MeshSource, SolverName, SolverSettings};
 use crate::cli::failure::Failure;
-use crate::cli::terminal::COLUMNS;
 use crate::discretization::Discretization;
 use crate::formats::gmsh::{PhysicalGroup, parse};
-use crate::mesh::{GmshMesh, MAX_VERTICES, MeshFamily, ReadError, estimated_vertices, generate, gmsh_nodes};
+use crate::mesh::{
+    GmshMesh, MAX_VERTICES, Mesh, MeshFamily, ReadError, estimated_vertices, generate, gmsh_nodes,
+};
 use crate::output::Seconds;
 use crate::problem::ContactProblem;
 #[cfg(any(feature = "clarabel", feature = "osqp"))]
 use crate::solver::QpSolver;
 use crate::solver::{ActiveSet, Auto, ContactSolver, Multigrid, SolverError, SolverOptions};
-use crate::text::{excerpt, grouped};
+use crate::text::grouped;
 
 /// The case and its meshes.
 pub(crate) struct Setup {
@@ -34,6 +35,8 @@ pub(crate) struct Setup {
     pub(crate) node_tags: Vec<u64>,
     /// The physical groups of the mesh file that no datum mentions.
     pub(crate) groups: Vec<PhysicalGroup>,
+    /// What is to be told of the mesh file, in lines for the terminal.
+    pub(crate) notes: String,
     pub(crate) seconds: Seconds,
     pub(crate) memory: Memory,
 }
@@ -48,13 +51,12 @@ impl Setup {
         let case = CaseFile::parse(&name, &text, &arguments.path)?;
         progress.stage("making the mesh");
         let start = Instant::now();
-        let Meshes { family, node_tags, groups } =
+        let Meshes { family, node_tags, groups, notes } =
             make_mesh(&name, &case, arguments.refine as usize, memory)?;
         let id = CaseId::new(&name, &text, &case.mesh);
         let seconds = Seconds { mesh: start.elapsed().as_secs_f64(), ..Seconds::default() };
-        let groups = not_mentioned(groups, &case.problem);
         let further = arguments.refine as usize;
-        Ok(Self { name, id, case, further, family, node_tags, groups, seconds, memory })
+        Ok(Self { name, id, case, further, family, node_tags, groups, notes, seconds, memory })
     }
 
     /// How often the mesh was refined, by the case file and further.
@@ -95,38 +97,13 @@ impl Setup {
     }
 }
 
-/// Those of the physical groups that no datum mentions.
-fn not_mentioned(groups: Vec<PhysicalGroup>, problem: &ContactProblem) -> Vec<PhysicalGroup> {
-    let [curves, regions] = [problem.curves(), problem.regions()].map(HashSet::<&str>::from_iter);
-    let is_mentioned = |group: &PhysicalGroup| match group.dimension {
-        1 => curves.contains(group.to_string().as_str()),
-        2 => regions.contains(group.to_string().as_str()),
-        _ => false,
-    };
-    groups.into_iter().filter(|group| !is_mentioned(group)).collect()
-}
-
-/// The groups that a run does not use, in one line for the terminal; nothing where there are none.
-pub(crate) fn unused_groups(groups: &[PhysicalGroup]) -> String {
-    /// Names are left out where the line would become wider than 80 columns.
-    const WIDEST: usize = COLUMNS - ", and 1,000 more".len();
-    let mut line = String::from("  physical groups not used:");
-    for (k, group) in groups.iter().enumerate() {
-        let name = excerpt(&group.to_string());
-        if k > 0 && line.chars().count() + 2 + name.chars().count() > WIDEST {
-            return format!("{line}, and {} more\n", grouped(groups.len() - k));
-        }
-        line += if k > 0 { ", " } else { " " };
-        line += &name;
-    }
-    if groups.is_empty() { String::new() } else { line + "\n" }
-}
-
 /// The meshes of a case, and what its mesh file calls their parts.
 struct Meshes {
     family: MeshFamily,
     node_tags: Vec<u64>,
+    /// Those that no datum mentions.
     groups: Vec<PhysicalGroup>,
+    notes: String,
 }
 
 /// Reads a mesh within the memory that there is.
@@ -160,12 +137,13 @@ fn make_mesh(name: &str, case: &CaseFile, further: usize, memory: Memory) -> Res
         let finest = check_refinements(name, vertices, refinements)?;
         memory.check(name, SolverName::Multigrid, finest)
     };
-    let (mut node_tags, mut groups) = (Vec::new(), Vec::new());
+    let (mut node_tags, mut groups, mut notes) = (Vec::new(), Vec::new(), String::new());
     let mut family = match &case.mesh {
         MeshSource::File(path) => {
             let read = read_mesh(name, path, memory, check)?;
-            (node_tags, groups) = (read.node_tags, read.groups);
-            MeshFamily::polygonal(read.mesh)
+            let told = FileNotes::new(read.groups, read.mesh.views(), read.notes, &case.problem);
+            (node_tags, notes, groups) = (read.node_tags, told.to_string(), told.unused_groups);
+            MeshFamily::polygonal(with_views(read.mesh, &case.problem))
         }
         MeshSource::Generator { domain, size, grading } => {
             let vertices = estimated_vertices(domain, *size);
@@ -188,7 +166,14 @@ fn make_mesh(name: &str, case: &CaseFile, further: usize, memory: Memory) -> Res
             .refine()
             .map_err(|error| bad_mesh(&format!("{error}{}", gmsh_nodes(&error.vertices(), &node_tags))))?;
     }
-    Ok(Meshes { family, node_tags, groups })
+    Ok(Meshes { family, node_tags, groups, notes })
+}
+
+/// The mesh without the views that no datum asks for. Where one is asked for that is not there, a message will name all.
+fn with_views(mesh: Mesh, problem: &ContactProblem) -> Mesh {
+    let wanted = problem.views();
+    let are_there = wanted.iter().all(|name| mesh.views().get(name).is_some());
+    if are_there { mesh.keeping_views(|name| wanted.contains(&name)) } else { mesh }
 }
 
 /// What to do when the time is over before a mesh is there.
@@ -278,17 +263,5 @@ mod tests {
         assert_eq!(refused(SolverName::Multigrid, &floor), None);
         assert_eq!(refused(SolverName::Multigrid, &two), Some(SolverError::Coupled));
         assert_eq!(refused(SolverName::Auto, &two), None);
-    }
-
-    #[test]
-    fn groups_that_are_not_used_are_one_line_of_80_columns() {
-        let group =
-            |tag: u64| PhysicalGroup { dimension: 1, tag, name: (tag < 3).then(|| "an\nedge".into()) };
-        let line = |tags: std::ops::Range<u64>| unused_groups(&tags.map(group).collect::<Vec<_>>());
-        assert_eq!(line(0..0), "");
-        assert_eq!(line(2..4), "  physical groups not used: an\\nedge, curves 3\n");
-        let many = line(3..1003);
-        assert_eq!(many, "  physical groups not used: curves 3, curves 4, curves 5, and 997 more\n");
-        assert!(many.len() <= 81);
     }
 }

@@ -2,8 +2,9 @@
 
 use super::StackDiscretization;
 use super::error::StackError;
-use super::fields::{IntegrationRule, Samples, at_samples, samples};
+use super::fields::IntegrationRule;
 use super::membrane::MembraneData;
+use super::samples::{Samples, at_samples, is_constant_on_triangles, samples};
 use super::supports::Held;
 use crate::fem::LoadMoments;
 use crate::geometry::distance_sq;
@@ -32,7 +33,7 @@ impl StackDiscretization {
     /// When it has no value somewhere.
     pub(crate) fn tension_samples(&self, i: usize) -> Result<Option<Vec<Samples>>, StackError> {
         let tension = &self.problem.membranes()[i - 1].tension;
-        if tension.is_constant_on_triangles() {
+        if is_constant_on_triangles(&self.mesh, tension) {
             return Ok(None);
         }
         samples(&self.mesh, tension, &format!("tension mu{i}")).map(Some)
@@ -62,6 +63,11 @@ impl StackDiscretization {
     /// The load of membrane `i` triangle by triangle, without line loads.
     pub(crate) fn moments(&self, i: usize) -> &LoadMoments {
         &self.membranes[i - 1].moments
+    }
+
+    /// Whether the foundation of membrane `i` has one value on each triangle.
+    pub(crate) fn has_even_foundation(&self, i: usize) -> bool {
+        is_constant_on_triangles(&self.mesh, &self.problem.membranes()[i - 1].foundation)
     }
 
     /// The mean of the foundation of membrane `i` on triangle `t`.

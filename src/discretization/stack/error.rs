@@ -38,6 +38,40 @@ pub enum StackError {
         /// Those that there are, in words.
         known: String,
     },
+    /// A data view that the mesh does not have.
+    #[error("{datum} is the data view `{}`, which the mesh does not have: {known}", excerpt(name))]
+    UnknownView {
+        /// Which datum.
+        datum: String,
+        /// The name.
+        name: String,
+        /// Those that there are, in words.
+        known: String,
+    },
+    /// A data view that is of no use as a datum.
+    #[error("{datum} is the data view `{}`, which {why}", excerpt(name))]
+    UselessView {
+        /// Which datum.
+        datum: String,
+        /// The name.
+        name: String,
+        /// What is wrong with it, and what helps.
+        why: String,
+    },
+    /// A data view without a value where the datum is needed.
+    #[error("{datum} is the data view `{}`, which has no value at ({}, {}), {place}: save one, or name regions where it has values", excerpt(name), Number(point[0]), Number(point[1]))]
+    NoValue {
+        /// Which datum.
+        datum: String,
+        /// The name.
+        name: String,
+        /// A vertex or triangle, in words.
+        place: String,
+        /// The vertex, counted from 0, if it is one.
+        vertex: Option<usize>,
+        /// Its coordinates, or those of the barycentre.
+        point: [f64; 2],
+    },
     /// A part of the mesh in two of the regions or curves that a datum names.
     #[error("{datum} is given twice, in `{}` and in `{}`, which overlap at ({}, {}): name one of them", excerpt(&names[0]), excerpt(&names[1]), Number(point[0]), Number(point[1]))]
     Overlap {
@@ -137,18 +171,18 @@ impl StackError {
     pub fn vertex(&self) -> Option<usize> {
         match self {
             Self::HeightJumps { vertex, .. } | Self::Order { vertex, .. } => Some(*vertex),
+            Self::NoValue { vertex, .. } => *vertex,
             _ => None,
         }
     }
 }
 
 /// The names that there are, for a reader who has missed one.
-pub(super) fn known(names: &[String], what: &str) -> String {
-    match names {
-        [] => format!("it has no named {what}s"),
-        _ => {
-            let names: Vec<String> = names.iter().map(|name| format!("`{}`", excerpt(name))).collect();
-            format!("its {what}s are {}", names.join(", "))
-        }
+pub(super) fn known<'n>(names: impl IntoIterator<Item = &'n str>, what: &str) -> String {
+    let names: Vec<String> = names.into_iter().map(|name| format!("`{}`", excerpt(name))).collect();
+    if names.is_empty() {
+        format!("it has no named {what}s")
+    } else {
+        format!("its {what}s are {}", names.join(", "))
     }
 }

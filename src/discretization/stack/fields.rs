@@ -2,9 +2,7 @@
 
 use super::error::{StackError, known};
 use crate::fem::{LoadMoments, SeenLoad, moments_on};
-use crate::mesh::{HalfEdge, HalfEdges, Mesh, VertexKind};
-use crate::parallel::BLOCK;
-use crate::parallel::prelude::*;
+use crate::mesh::{HalfEdge, HalfEdges, Mesh, VertexKind, View, ViewPlace};
 use crate::problem::{Field, Function};
 
 /// How data are integrated over a triangle.
@@ -26,13 +24,13 @@ pub(super) const POSITIVE: Allowed = (|mu| mu > 0.0, "positive and finite");
 pub(super) const NOT_NEGATIVE: Allowed = (|c| c >= 0.0, "a finite number >= 0");
 
 /// A field that knows no regions, and the triangles on which it is the datum.
-struct Piece<'f> {
-    field: &'f Field,
-    triangles: Vec<usize>,
+pub(super) struct Piece<'f> {
+    pub(super) field: &'f Field,
+    pub(super) triangles: Vec<usize>,
 }
 
 /// Which field is the datum on which triangles.
-fn pieces<'f>(mesh: &Mesh, field: &'f Field, datum: &str) -> Result<Vec<Piece<'f>>, StackError> {
+pub(super) fn pieces<'f>(mesh: &Mesh, field: &'f Field, datum: &str) -> Result<Vec<Piece<'f>>, StackError> {
     let mut pieces = Vec::new();
     divide(mesh, field, (0..mesh.triangles().len()).collect(), datum, &mut pieces)?;
     Ok(pieces)
@@ -57,7 +55,7 @@ fn divide<'f>(
         let region = groups.region(name).ok_or_else(|| StackError::UnknownRegion {
             datum: datum.into(),
             name: name.clone(),
-            known: known(groups.regions(), "region"),
+            known: known(groups.regions().iter(), "region"),
         })?;
         for t in region {
             if part_of[t] != NOBODY {
@@ -107,8 +105,39 @@ fn check_length(datum: &str, found: usize, expected: usize, of: &'static str) ->
     Err(StackError::Length { datum: datum.into(), found, expected, of })
 }
 
+/// The data view of this name.
+fn view<'m>(mesh: &'m Mesh, name: &str, datum: &str) -> Result<&'m View, StackError> {
+    let (datum, views) = (datum.to_owned(), mesh.views());
+    match views.get(name) {
+        Some(Ok(view)) => Ok(view),
+        Some(Err(why)) => Err(StackError::UselessView { datum, name: name.into(), why: why.into() }),
+        None => Err(StackError::UnknownView {
+            datum,
+            name: name.into(),
+            known: known(views.names(), "data view"),
+        }),
+    }
+}
+
+/// The values of a view at vertices, or on triangles.
+fn values_of(
+    mesh: &Mesh,
+    view: &View,
+    places: &[usize],
+    [name, datum]: [&str; 2],
+) -> Result<Vec<f64>, StackError> {
+    let missing = |k: usize| {
+        let (place, vertex, point) = match view.place() {
+            ViewPlace::Vertices => (format!("vertex {k}"), Some(k), mesh.points()[k]),
+            ViewPlace::Triangles => (format!("triangle {k}"), None, barycentre(mesh, k)),
+        };
+        StackError::NoValue { datum: datum.into(), name: name.into(), place, vertex, point }
+    };
+    places.iter().map(|&k| view.value(k).ok_or_else(|| missing(k))).collect()
+}
+
 /// A field on the triangles of a piece.
-enum OnTriangles {
+pub(super) enum OnTriangles {
     /// One value each.
     Values(Vec<f64>),
     /// What the quadrature sees.
@@ -116,7 +145,7 @@ enum OnTriangles {
 }
 
 impl Piece<'_> {
-    fn on_triangles(
+    pub(super) fn on_triangles(
         &self,
         mesh: &Mesh,
         datum: &str,
@@ -124,6 +153,12 @@ impl Piece<'_> {
     ) -> Result<OnTriangles, StackError> {
         let Self { field, triangles } = self;
         let third = |t: usize| mesh.triangle_area(t) / 3.0;
+        if let Field::View(name) = field {
+            let view = view(mesh, name, datum)?;
+            if view.place() == ViewPlace::Triangles {
+                return Ok(OnTriangles::Values(values_of(mesh, view, triangles, [name, datum])?));
+            }
+        }
         Ok(match (*field, rule) {
             (Field::Everywhere(Function::Constant(value)), _) => {
                 OnTriangles::Values(vec![*value; triangles.len()])
@@ -138,7 +173,7 @@ impl Piece<'_> {
                     seen.map_err(|source| StackError::Evaluation { datum: datum.into(), source })?,
                 )
             }
-            (Field::PerVertex(_), IntegrationRule::Quadrature) => {
+            (Field::PerVertex(_) | Field::View(_), IntegrationRule::Quadrature) => {
                 let corners = self.at_corners(mesh, datum)?;
                 let integrals = |(&t, at): (&usize, [f64; 3])| {
                     let sum = at.iter().sum::<f64>();
@@ -156,7 +191,7 @@ impl Piece<'_> {
     }
 
     /// The values at the corners of the triangles.
-    fn at_corners(&self, mesh: &Mesh, datum: &str) -> Result<Vec<[f64; 3]>, StackError> {
+    pub(super) fn at_corners(&self, mesh: &Mesh, datum: &str) -> Result<Vec<[f64; 3]>, StackError> {
         let mut around: Vec<usize> = self.triangles.iter().flat_map(|&t| mesh.triangles()[t]).collect();
         around.sort_unstable();
         around.dedup();
@@ -227,51 +262,6 @@ pub(super) fn means(
     Ok(means)
 }
 
-/// A field at seven points of a triangle: the corners, the midpoints of the edges from each corner to the next, the barycentre.
-pub(crate) type Samples = [f64; 7];
-
-/// Where data are sampled on a triangle to bound errors: the corners, the midpoints of the edges from each corner to the next, the
-/// barycentre. Barycentric coordinates.
-const SAMPLES: [[f64; 3]; 7] = [
-    [1.0, 0.0, 0.0],
-    [0.0, 1.0, 0.0],
-    [0.0, 0.0, 1.0],
-    [0.5, 0.5, 0.0],
-    [0.0, 0.5, 0.5],
-    [0.5, 0.0, 0.5],
-    [1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0],
-];
-
-/// An affine function at the points, from its values at the corners.
-pub(crate) fn at_samples(corners: [f64; 3]) -> Samples {
-    SAMPLES.map(|point| (0..3).map(|j| point[j] * corners[j]).sum::<f64>())
-}
-
-/// A field at the corners of each triangle, the midpoints of its edges (from each corner to the next) and its barycentre, as the
-/// triangle itself sees it. Shape: `triangles x 7`.
-pub(super) fn samples(mesh: &Mesh, field: &Field, datum: &str) -> Result<Vec<Samples>, StackError> {
-    let mut samples = vec![[0.0; 7]; mesh.triangles().len()];
-    for Piece { field, triangles } in pieces(mesh, field, datum)? {
-        let of_triangle = |t: usize| match field {
-            Field::PerTriangle(values) => Ok([values[t]; 7]),
-            Field::PerVertex(values) => Ok(at_samples(mesh.triangles()[t].map(|a| values[a]))),
-            Field::Everywhere(function) => {
-                let corners = mesh.corners(t);
-                let [x, y] = [0, 1].map(|axis| at_samples(corners.map(|corner| corner[axis])));
-                let mut values = [0.0; 7];
-                let evaluated = function.eval_many(&x, &y, &mut values).map(|()| values);
-                evaluated.map_err(|source| StackError::Evaluation { datum: datum.into(), source })
-            }
-            Field::ByRegion { .. } => unreachable!("pieces know no regions"),
-        };
-        let found: Vec<_> = triangles.par_iter().with_min_len(BLOCK).map(|&t| of_triangle(t)).collect();
-        for (t, found) in triangles.into_iter().zip(found) {
-            samples[t] = found?;
-        }
-    }
-    Ok(samples)
-}
-
 /// The values at the given vertices; where regions meet that have values of their own, the `stricter` of them.
 pub(super) fn at_vertices(
     mesh: &Mesh,
@@ -295,6 +285,13 @@ pub(super) fn at_vertices(
             Ok(vertices.iter().map(|&a| values[a]).collect())
         }
         Field::PerTriangle(_) => Err(StackError::NotAtVertices { datum: datum.into() }),
+        Field::View(name) => {
+            let view = view(mesh, name, datum)?;
+            if view.place() == ViewPlace::Triangles {
+                return Err(StackError::NotAtVertices { datum: datum.into() });
+            }
+            values_of(mesh, view, vertices, [name, datum])
+        }
         Field::ByRegion { .. } => {
             let mut strictest = vec![None::<f64>; mesh.points().len()];
             let mut is_wanted = vec![false; mesh.points().len()];

@@ -170,7 +170,7 @@ fn edges_of_parts<'m>(mesh: &Mesh, membrane: &'m Membrane, i: usize) -> Result<V
         let curve = groups.curve(name).ok_or_else(|| StackError::UnknownCurve {
             datum: datum(),
             name: name.clone(),
-            known: known(groups.curves(), "curve"),
+            known: known(groups.curves().iter(), "curve"),
         })?;
         let edges: Vec<[usize; 2]> = curve.collect();
         for &edge in &edges {

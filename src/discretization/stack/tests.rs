@@ -1,7 +1,7 @@
 //! What cannot be posed, and what data become on a mesh.
 
 use super::{GapRow, IntegrationRule, StackDiscretization, StackError};
-use crate::mesh::{Mesh, Pattern, rectangle};
+use crate::mesh::{Mesh, Pattern, ViewPlace, rectangle};
 use crate::problem::{ContactProblem, Field, Function, Membrane};
 
 /// Rounding of sums of a few dozen terms.
@@ -70,6 +70,83 @@ fn each_datum_that_does_not_fit_is_named() {
     assert!(moved.rows().iter().all(|row| row.bound <= 1.0 + 1e-14));
     let heights = moved.obstacles()[1].unwrap();
     assert_eq!((heights[0], heights[12]), (1.0, 1.0 + 1e-14), "at the boundary and inside");
+}
+
+/// The same mesh with views, one of which is given by a file for some vertices only.
+fn viewed() -> Mesh {
+    let [vertices, triangles] = [ViewPlace::Vertices, ViewPlace::Triangles];
+    let affine: Vec<f64> = mesh().points().iter().map(|[x, y]| 3.0 + x - 2.0 * y).collect();
+    let mesh = mesh().with_view("affine", vertices, affine).unwrap();
+    mesh.with_view("two", triangles, [2.0; 32]).unwrap().with_view("minus", vertices, [-1.0; 25]).unwrap()
+}
+
+#[test]
+fn a_view_means_what_its_values_mean_also_on_a_refined_mesh() {
+    let membrane =
+        |field: Field, load: Field| Membrane::new(field.clone()).load(load).foundation(field).height(1.0);
+    let posed_on = |mesh: Mesh, membrane: Membrane| {
+        let problem = ContactProblem::stack().membrane(membrane).floor(Field::from(-9.0)).build().unwrap();
+        StackDiscretization::new(&problem, mesh).unwrap()
+    };
+    let affine = || Field::from(Function::from_fn(|x, y| 3.0 + x - 2.0 * y));
+    for mesh in [viewed(), viewed().refine().unwrap().mesh] {
+        let by_views = [
+            Field::view("affine"),
+            Field::by_region([("west", Field::view("two"))]).elsewhere(Field::view("two")),
+        ];
+        let by_values = [affine(), 2.0.into()];
+        let [one, other] =
+            [by_views, by_values].map(|[field, load]| posed_on(mesh.clone(), membrane(field, load)));
+        for a in 0..mesh.points().len() {
+            assert!((one.load(1)[a] - other.load(1)[a]).abs() < ROUNDING);
+            assert!((one.diagonal(1, a) - other.diagonal(1, a)).abs() < ROUNDING);
+        }
+    }
+    // Heights and obstacles, at vertices.
+    let over = |field: Field, floor: Field| {
+        StackDiscretization::new(
+            &ContactProblem::obstacle(Membrane::new(1.0).height(field), floor).unwrap(),
+            viewed(),
+        )
+        .unwrap()
+    };
+    let heights = over(Field::view("affine"), Field::view("minus"));
+    let expected = over(affine(), Field::from(-1.0));
+    assert_eq!(heights.obstacles()[1], expected.obstacles()[1]);
+    let bounds = |d: &StackDiscretization| d.rows().iter().map(|row| row.bound).collect::<Vec<_>>();
+    assert_eq!(bounds(&heights), bounds(&expected));
+}
+
+#[test]
+fn a_view_that_does_not_fit_is_named() {
+    let refused = |membrane: Membrane| {
+        let problem = ContactProblem::stack().membrane(membrane).build().unwrap();
+        StackDiscretization::new(&problem, viewed()).unwrap_err()
+    };
+    let sheet = || Membrane::new(1.0);
+    let table = [
+        (
+            sheet().load(Field::view("afine")),
+            "load f1 is the data view `afine`, which the mesh does not have: its data views are `affine`, `minus`, `two`",
+        ),
+        (
+            sheet().height(Field::view("two")),
+            "height g1 is given by triangle, but it is needed at the vertices",
+        ),
+        (Membrane::new(Field::view("minus")), "tension mu1 is -1 on the triangle at"),
+        (sheet().foundation(Field::view("minus")), "foundation c1 is -1 on the triangle at"),
+    ];
+    for (membrane, words) in table {
+        let message = refused(membrane).to_string();
+        assert!(message.starts_with(words), "{message}");
+    }
+    let none = StackDiscretization::new(
+        &ContactProblem::stack().membrane(sheet().load(Field::view("p"))).build().unwrap(),
+        mesh(),
+    );
+    assert!(
+        none.unwrap_err().to_string().ends_with("which the mesh does not have: it has no named data views")
+    );
 }
 
 /// Values at the vertices of an affine function, and of a constant on triangles, are that function.

@@ -1,74 +1,48 @@
-//! The elements of a Gmsh file: triangles are kept, and lines that may belong to a physical group; points are counted, all
-//! others are refused.
+//! The elements of a Gmsh file: triangles and quadrangles are kept, and lines that may belong to a physical group; points are
+//! counted, all others are refused. Of elements of higher order the corners are kept.
+
+mod cut;
+mod kind;
+
+pub(super) use cut::cut;
+pub(super) use kind::{Kind, Shape};
 
 use super::error::GmshError;
 use super::nodes::Nodes;
 use super::scanner::Scanner;
 
-/// The kinds of elements that may be in the file of a plane triangulation.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
-    Point,
-    Line,
-    Triangle,
-}
+/// The fourth corner of a triangle.
+const NO_NODE: u32 = u32::MAX;
 
-impl Kind {
-    /// Number of nodes of an element.
-    pub(super) fn nodes(self) -> usize {
-        match self {
-            Self::Point => 1,
-            Self::Line => 2,
-            Self::Triangle => 3,
-        }
-    }
+/// The corners of a triangle or a quadrangle, as indices of nodes: three and [`NO_NODE`], or four in their order around it.
+pub(super) type Cell = [u32; 4];
 
-    /// The dimension of an element.
-    pub(super) fn dimension(self) -> u8 {
-        match self {
-            Self::Point => 0,
-            Self::Line => 1,
-            Self::Triangle => 2,
-        }
-    }
-
-    /// Reads the number that Gmsh gives to a kind of elements (`GmshDefines.h`).
-    pub(super) fn read(scanner: &mut Scanner) -> Result<Self, GmshError> {
-        let code = scanner.int("an element type")?;
-        let (shape, remedy) = match code {
-            15 => return Ok(Self::Point),
-            1 => return Ok(Self::Line),
-            2 => return Ok(Self::Triangle),
-            3 | 10 | 16 | 36..=41 | 47..=51 | 57..=61 => {
-                ("quadrangles", "mesh without `Recombine Surface` and with Mesh.RecombineAll = 0")
-            }
-            8 | 9 | 20..=28 | 42..=46 | 52..=56 | 62..=66 => {
-                ("elements of higher order", "mesh with Mesh.ElementOrder = 1 (`gmsh -order 1`)")
-            }
-            4..=7 | 11..=14 | 17..=19 | 29..=33 | 71..=75 | 79..=83 | 90..=132 | 137 => {
-                ("volume elements", "mesh a plane surface only (`gmsh -2`)")
-            }
-            _ => ("such elements", "mesh a plane surface with triangles of three nodes"),
-        };
-        Err(GmshError::Element { place: scanner.place(), shape, code, remedy })
-    }
+/// The corners that there are.
+pub(super) fn corners(cell: &Cell) -> &[u32] {
+    if cell[3] == NO_NODE { &cell[..3] } else { cell }
 }
 
 /// What was read from `$Elements`.
 #[derive(Default)]
 pub(super) struct Elements {
-    /// The vertices of every triangle, as indices of nodes.
-    pub(super) triangles: Vec<[usize; 3]>,
-    /// Tag of every triangle.
+    /// The triangles and quadrangles.
+    pub(super) cells: Vec<Cell>,
+    /// Tag of each of them.
     pub(super) tags: Vec<u64>,
+    /// Tags of cells that repeat another one, and that one. Only MSH 2 has such, where a tag is an `int`.
+    pub(super) repetitions: Vec<(u32, u32)>,
     /// Number of points and lines.
     pub(super) others: usize,
-    /// Triangles with their labels, in increasing order; one may have several labels, or none.
+    /// Number of lines, triangles and quadrangles of higher order.
+    pub(super) curved: usize,
+    /// Cells with their labels, in increasing order; one may have several labels, or none.
     pub(super) labels: Vec<(u32, Label)>,
     /// The nodes of the lines that have a label.
     pub(super) lines: Vec<([u32; 2], Label)>,
     /// Lines with a label and a node that is not there.
     pub(super) strays: Vec<Stray>,
+    /// For each node whether an element of higher order has it between its corners; empty where none has.
+    between: Vec<bool>,
 }
 
 /// What tells the groups of an element: the group itself in MSH 2, the entity of the geometry in MSH 4.
@@ -83,37 +57,55 @@ pub(super) struct Stray {
     pub(super) node: u64,
 }
 
-/// Nodes and triangles are counted in 32 bits: more would take a file of tens of gigabytes.
+/// Nodes and cells are counted in 32 bits: more would take a file of tens of gigabytes.
 fn number(n: usize) -> u32 {
-    u32::try_from(n).expect("a file has less than 2^32 nodes and triangles")
+    u32::try_from(n).ok().filter(|&n| n != NO_NODE).expect("a file has less than 2^32 - 1 nodes and elements")
 }
 
 impl Elements {
-    /// Appends the triangle whose vertices have the tags `vertices`.
-    pub(super) fn add(
+    /// Appends the triangle or quadrangle whose corners have the tags `corners`.
+    pub(super) fn add_cell(
         &mut self,
         scanner: &Scanner,
         nodes: &Nodes,
         element: u64,
-        vertices: [u64; 3],
+        corners: &[u64],
     ) -> Result<(), GmshError> {
-        let mut triangle = [0; 3];
-        for (index, node) in triangle.iter_mut().zip(vertices) {
-            *index = nodes.index(node).ok_or_else(|| GmshError::UnknownNode {
-                place: scanner.place(),
-                shape: "triangle",
-                element,
-                node,
-            })?;
+        let mut cell = [NO_NODE; 4];
+        let shape = if corners.len() == 3 { "triangle" } else { "quadrangle" };
+        for (index, &node) in cell.iter_mut().zip(corners) {
+            let unknown = || GmshError::UnknownNode { place: scanner.place(), shape, element, node };
+            *index = number(nodes.index(node).ok_or_else(unknown)?);
         }
-        self.triangles.push(triangle);
+        self.cells.push(cell);
         self.tags.push(element);
         Ok(())
     }
 
-    /// The triangle that was appended last has this label.
-    pub(super) fn label_triangle(&mut self, label: Label) {
-        self.labels.push((number(self.triangles.len() - 1), label));
+    /// Drops the last cell if it repeats the one before: for a surface in several physical groups MSH 2 has each
+    /// cell once per group, one right behind the other (a negative group reverses it).
+    pub(super) fn drop_repetition(&mut self) {
+        let sorted = |mut cell: Cell| {
+            cell.sort_unstable();
+            cell
+        };
+        if let [.., before, last] = self.cells[..]
+            && sorted(before) == sorted(last)
+        {
+            self.cells.pop();
+            let tag = self.tags.pop().and_then(|tag| u32::try_from(tag).ok());
+            let kept = self.last_cell();
+            self.repetitions.extend(tag.map(|tag| (tag, kept)));
+        }
+    }
+
+    /// The cell that was appended last has this label.
+    pub(super) fn label_cell(&mut self, label: Label) {
+        self.labels.push((self.last_cell(), label));
+    }
+
+    fn last_cell(&self) -> u32 {
+        number(self.cells.len() - 1)
     }
 
     /// Appends the line whose ends have the tags `ends`.
@@ -130,5 +122,47 @@ impl Elements {
             [Ok(a), Ok(b)] => self.lines.push(([number(a), number(b)], label)),
             [Err(node), _] | [_, Err(node)] => self.strays.push(stray(node)),
         }
+    }
+
+    /// An element of higher order has this node between its corners. One that is not there is not missed.
+    pub(super) fn add_between(&mut self, nodes: &Nodes, node: u64) {
+        if self.between.is_empty() {
+            self.between = vec![false; nodes.tags.len()];
+        }
+        if let Some(index) = nodes.index(node) {
+            self.between[index] = true;
+        }
+    }
+
+    /// Drops the nodes that are nothing but between the corners of others.
+    pub(super) fn drop_between(&mut self, nodes: &mut Nodes) {
+        let mut dropped = std::mem::take(&mut self.between);
+        if dropped.is_empty() {
+            return;
+        }
+        let ends = self.lines.iter().flat_map(|(ends, _)| ends);
+        ends.chain(self.cells.iter().flat_map(corners)).for_each(|&a| dropped[a as usize] = false);
+        let renumbered = nodes.without(&dropped);
+        let renumber = |a: &mut u32| *a = renumbered[*a as usize];
+        self.lines.iter_mut().flat_map(|(ends, _)| ends).for_each(renumber);
+        self.cells.iter_mut().flatten().filter(|a| **a != NO_NODE).for_each(renumber);
+    }
+}
+
+/// Finds cells by the tags of their elements.
+pub(super) struct CellsOfTags(Vec<(u64, u32)>);
+
+impl CellsOfTags {
+    pub(super) fn new(tags: &[u64], repetitions: &[(u32, u32)]) -> Self {
+        let repeated = repetitions.iter().map(|&(tag, cell)| (u64::from(tag), cell));
+        let mut cells: Vec<_> = tags.iter().copied().zip(0..).chain(repeated).collect();
+        cells.sort_unstable();
+        Self(cells)
+    }
+
+    /// The cell that has this tag, of several the first.
+    pub(super) fn cell(&self, tag: u64) -> Option<u32> {
+        let found = self.0.get(self.0.partition_point(|&(other, _)| other < tag))?;
+        (found.0 == tag).then_some(found.1)
     }
 }

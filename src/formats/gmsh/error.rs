@@ -134,7 +134,7 @@ pub enum GmshError {
         /// Number of the second one.
         second: usize,
     },
-    /// A triangle, or a line of a physical group, with a vertex that is not in `$Nodes`.
+    /// A triangle or quadrangle, or a line of a physical group, with a vertex that is not in `$Nodes`.
     #[error(
         "{place}, $Elements: {shape} {element} names the node {node}, which is not in $Nodes; \
          write the file again with Gmsh"
@@ -149,7 +149,7 @@ pub enum GmshError {
         /// Tag of the node.
         node: u64,
     },
-    /// Elements that are neither triangles of three nodes, nor points, nor lines of two nodes.
+    /// Elements that are neither points, lines, triangles nor quadrangles.
     #[error("{place}, $Elements: {shape} (element type {code}) are not read; {remedy}")]
     Element {
         /// Where.
@@ -161,22 +161,32 @@ pub enum GmshError {
         /// How to get a mesh without them.
         remedy: &'static str,
     },
-    /// A node of a triangle outside the plane of the others.
+    /// A quadrangle that neither of its diagonals divides.
     #[error(
-        "the mesh is not flat: node {node} has z = {height:?}, the mesh begins at z = {plane:?}; \
-         turn the surface into a plane z = constant"
+        "$Elements: quadrangle {element} cannot be cut in two triangles: its sides cross, or its corners lie on a line; \
+         mesh the surface again, or without `Recombine Surface`"
+    )]
+    Quadrangle {
+        /// Its tag.
+        element: u64,
+    },
+    /// Nodes of the mesh that lie in no plane.
+    #[error(
+        "the mesh is not flat: node {node} is {distance:.3e} away from the plane through the nodes {}, {} and {}; \
+         turn the surface into a plane one",
+        through[0], through[1], through[2]
     )]
     NotFlat {
         /// Tag of the node.
         node: u64,
-        /// Its third coordinate.
-        height: f64,
-        /// Third coordinate of the first vertex of the first triangle.
-        plane: f64,
+        /// Its distance from the plane.
+        distance: f64,
+        /// Tags of three nodes of the mesh, far from each other.
+        through: [u64; 3],
     },
     /// Only points and lines.
     #[error(
-        "no triangle among the elements ({} points and lines); mesh the surface (`gmsh -2`), and if there \
+        "no triangle or quadrangle among the elements ({} points and lines); mesh the surface (`gmsh -2`), and if there \
          are physical groups, put the surface into one or set Mesh.SaveAll = 1",
         grouped(*others)
     )]

@@ -1,6 +1,6 @@
 //! The physical groups of a Gmsh file: names and numbers that the author of the geometry gave to parts of it.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::fmt;
 
 use super::elements::{Label, Stray};
@@ -13,25 +13,35 @@ pub struct PhysicalGroup {
     /// 0 for points, 1 for curves, 2 for surfaces, 3 for volumes.
     pub dimension: u8,
     /// Its number, different from those of the other groups of this dimension.
-    pub tag: u64,
+    pub tag: u32,
     /// Its name, if it has one.
-    pub name: Option<String>,
+    pub name: Option<Box<str>>,
 }
 
 impl PhysicalGroup {
     /// What tells it from the others.
-    fn key(&self) -> (u8, u64) {
+    fn key(&self) -> (u8, u32) {
         (self.dimension, self.tag)
     }
+
+    /// Bytes of what it is called.
+    pub(crate) fn name_length(&self) -> usize {
+        match &self.name {
+            Some(name) => name.len(),
+            None => KINDS[usize::from(self.dimension)].len() + 1 + self.tag.max(1).ilog10() as usize + 1,
+        }
+    }
 }
+
+/// What groups without a name consist of, by dimension.
+const KINDS: [&str; 4] = ["points", "curves", "surfaces", "volumes"];
 
 /// The name, else what the group consists of and its number.
 impl fmt::Display for PhysicalGroup {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let of = ["points", "curves", "surfaces", "volumes"];
         match &self.name {
             Some(name) => write!(f, "{name}"),
-            None => write!(f, "{} {}", of[usize::from(self.dimension)], self.tag),
+            None => write!(f, "{} {}", KINDS[usize::from(self.dimension)], self.tag),
         }
     }
 }
@@ -64,9 +74,10 @@ impl GroupMembers {
 #[derive(Default)]
 pub(super) struct Groups {
     /// Dimension and tag of each group that a part of the geometry or an element belongs to.
-    members: BTreeSet<(u8, u64)>,
+    /// In any order, some again and again.
+    members: Vec<(u8, u32)>,
     /// The names by dimension (MSH 2.0 has none) and tag.
-    names: BTreeMap<(Option<u8>, u64), String>,
+    names: BTreeMap<(Option<u8>, u32), Box<str>>,
     /// The curves and surfaces of the geometry that belong to groups.
     entities: Vec<Entity>,
     /// The tags of the groups of all of them.
@@ -93,8 +104,9 @@ impl Entity {
 impl Groups {
     /// Something of this dimension belongs to the group `tag`; 0 is no group, and the sign tells an orientation.
     pub(super) fn add(&mut self, dimension: u8, tag: i32) {
-        if tag != 0 {
-            self.members.insert((dimension, u64::from(tag.unsigned_abs())));
+        let group = (dimension, tag.unsigned_abs());
+        if tag != 0 && self.members.last() != Some(&group) {
+            self.members.push(group);
         }
     }
 
@@ -129,11 +141,9 @@ impl Groups {
             scanner.skip_blank();
             let dimension = if with_dimensions { Some(read_dimension(scanner)?) } else { None };
             let tag: i32 = scanner.text_number("the tag of a physical group")?;
-            // As Gmsh has it: what stands between the first quotation mark and the next one, or the end of the line.
-            let line = String::from_utf8_lossy(scanner.rest_of_line());
-            let name = line.split('"').nth(1).unwrap_or("").trim_end_matches('\r');
+            let name = scanner.quoted();
             if !name.is_empty() {
-                self.names.insert((dimension, u64::from(tag.unsigned_abs())), name.into());
+                self.names.insert((dimension, tag.unsigned_abs()), name.into());
             }
         }
         Ok(())
@@ -173,11 +183,13 @@ impl Groups {
     fn into_groups(self) -> Vec<PhysicalGroup> {
         let Self { mut members, names, .. } = self;
         members.extend(names.keys().filter_map(|&(dimension, tag)| Some((dimension?, tag))));
-        let name = |dimension: u8, tag: u64| {
+        members.sort_unstable();
+        members.dedup();
+        let name = |dimension: u8, tag: u32| {
             names.get(&(Some(dimension), tag)).or_else(|| names.get(&(None, tag))).cloned()
         };
         let group =
-            |&(dimension, tag): &(u8, u64)| PhysicalGroup { dimension, tag, name: name(dimension, tag) };
+            |&(dimension, tag): &(u8, u32)| PhysicalGroup { dimension, tag, name: name(dimension, tag) };
         members.iter().map(group).collect()
     }
 }
@@ -190,7 +202,7 @@ fn parts_of_groups(groups: &[PhysicalGroup]) -> (Keys, GroupMembers) {
     let n = groups.len() as u32;
     let members =
         GroupMembers { carried: (0..n).collect(), ends: (1..=n).collect(), ..GroupMembers::default() };
-    (groups.iter().map(|group| (group.dimension, group.tag as Label)).collect(), members)
+    (groups.iter().map(|group| (group.dimension, group.tag)).collect(), members)
 }
 
 /// A part for each entity, still without members; `tags` are those of the groups of all entities.
@@ -200,16 +212,17 @@ fn parts_of_entities(
     groups: &[PhysicalGroup],
 ) -> (Keys, GroupMembers) {
     let group = |dimension: u8, tag: u32| {
-        let found = groups.binary_search_by_key(&(dimension, u64::from(tag)), PhysicalGroup::key);
+        let found = groups.binary_search_by_key(&(dimension, tag), PhysicalGroup::key);
         found.expect("the groups of entities were added") as u32
     };
     entities.sort_unstable_by_key(Entity::key);
     let (mut keys, mut members) = (Keys::new(), GroupMembers::default());
-    // An entity may be given twice.
+    let tags = |entity: &Entity| &tags[entity.start as usize..entity.end as usize];
+    // An entity may be given twice, as in a file that repeats the mesh before each view.
     for same in entities.chunk_by(|one, other| one.key() == other.key()) {
-        for &Entity { dimension, start, end, .. } in same {
-            let tags = &tags[start as usize..end as usize];
-            members.carried.extend(tags.iter().map(|&tag| group(dimension, tag)));
+        let others = same[1..].iter().filter(|entity| tags(entity) != tags(&same[0]));
+        for entity in same[..1].iter().chain(others) {
+            members.carried.extend(tags(entity).iter().map(|&tag| group(entity.dimension, tag)));
         }
         members.ends.push(members.carried.len() as u32);
         keys.push(same[0].key());

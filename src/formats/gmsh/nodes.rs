@@ -1,5 +1,10 @@
 //! The nodes of a Gmsh file, found by their tags.
 
+mod plane;
+
+pub use plane::FLATNESS;
+pub(super) use plane::flatten;
+
 use super::error::GmshError;
 use super::scanner::Scanner;
 
@@ -27,6 +32,23 @@ impl Nodes {
         Ok(Self { points, heights, tags, by_tag })
     }
 
+    /// Takes nodes out; the new number of each that is left.
+    pub(super) fn without(&mut self, dropped: &[bool]) -> Vec<u32> {
+        let mut kept = 0;
+        let next = |&dropped: &bool| {
+            kept += u32::from(!dropped);
+            kept.wrapping_sub(1)
+        };
+        let renumbered: Vec<u32> = dropped.iter().map(next).collect();
+        let is_kept = || dropped.iter().map(|dropped| !dropped);
+        retain(&mut self.points, is_kept());
+        retain(&mut self.heights, is_kept());
+        retain(&mut self.tags, is_kept());
+        self.by_tag.retain(|&(_, k)| !dropped[k]);
+        self.by_tag.iter_mut().for_each(|(_, k)| *k = renumbered[*k] as usize);
+        renumbered
+    }
+
     /// Index of the node that has this tag.
     pub(super) fn index(&self, tag: u64) -> Option<usize> {
         let last = self.by_tag.len().checked_sub(1)?;
@@ -40,6 +62,10 @@ impl Nodes {
         let found = candidates.binary_search_by_key(&tag, |&(tag, _)| tag).ok()?;
         Some(candidates[found].1)
     }
+}
+
+fn retain<T>(values: &mut Vec<T>, mut is_kept: impl Iterator<Item = bool>) {
+    values.retain(|_| is_kept.next() == Some(true));
 }
 
 /// Reads the coordinates of a node and appends them to `points` and `heights`.

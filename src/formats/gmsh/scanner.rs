@@ -140,6 +140,19 @@ impl<'a> Scanner<'a> {
         Err(self.syntax_error(&format!("`{}`", excerpt(&closing)), "the end of the file".into()))
     }
 
+    /// Skips a section that repeats what `body` has word for word: so Gmsh appends a view to a file, with the mesh once more.
+    pub(super) fn skip_repeated(&mut self, body: &[u8]) -> Result<(), GmshError> {
+        let start = self.at;
+        let is_same = self.skip_section().is_ok() && self.bytes[start..self.at] == *body;
+        if is_same { Ok(()) } else { Err(self.repeated_section()) }
+    }
+
+    /// What the section has from byte `start` to its end, at which the scanner is to be already, up to blanks.
+    pub(super) fn body_since(&mut self, start: usize) -> &'a [u8] {
+        self.skip_lines();
+        &self.bytes[start..self.at]
+    }
+
     /// The error of a section that was given before.
     pub(super) fn repeated_section(&self) -> GmshError {
         GmshError::RepeatedSection { place: self.place_of(self.opened_at), section: excerpt(self.section) }
@@ -175,6 +188,18 @@ impl<'a> Scanner<'a> {
         let length = rest.iter().position(|&b| b == b'\n').unwrap_or(rest.len());
         self.at += (length + 1).min(rest.len());
         &rest[..length]
+    }
+
+    /// Reads what stands between the first quotation mark of the line and the next one, or the end of the line, as Gmsh does; nothing
+    /// where there is no mark.
+    pub(super) fn quoted(&mut self) -> String {
+        let line = String::from_utf8_lossy(self.rest_of_line());
+        line.split('"').nth(1).unwrap_or("").trim_end_matches('\r').into()
+    }
+
+    /// Goes over blanks and the ends of lines before text, in binary files too.
+    pub(super) fn skip_lines(&mut self) {
+        self.skip_while(|b| b.is_ascii_whitespace());
     }
 
     /// Goes over blanks and the ends of lines of an ASCII file.
@@ -244,6 +269,11 @@ impl Scanner<'_> {
             Encoding::Ascii => self.end_line(),
             Encoding::Binary(_) => Ok(()),
         }
+    }
+
+    /// Bytes to the end of the file.
+    pub(super) fn left(&self) -> usize {
+        self.rest().len()
     }
 
     /// Accepts a number of things that the file declares to follow: each of them takes at least one byte.

@@ -1,7 +1,7 @@
 //! `$Nodes` and `$Elements` of MSH 2, where every record stands for itself and every whole number is an `int`. The versions 2.0,
 //! 2.1 and 2.2 differ in labels that are not read.
 
-use super::elements::{Elements, Kind};
+use super::elements::{Elements, Kind, Shape};
 use super::error::GmshError;
 use super::groups::Groups;
 use super::nodes::{Nodes, read_point};
@@ -114,28 +114,35 @@ impl Reader<'_, '_> {
     /// Takes the first label, the physical group (0 is none, and the sign tells an orientation), skips the others (surface,
     /// partitions) and takes the nodes.
     fn labels_and_nodes(&mut self, element: u64, kind: Kind, labels: usize) -> Result<(), GmshError> {
+        let shape = kind.shape;
         let mut group = 0;
         for label in 0..labels {
             let value = self.scanner.int("a label of an element")?;
             if label == 0 {
-                self.groups.add(kind.dimension(), value);
+                self.groups.add(shape.dimension(), value);
                 group = value.unsigned_abs();
             }
         }
-        let mut vertices = [0; 3];
-        for vertex in &mut vertices[..kind.nodes()] {
-            *vertex = read_tag(self.scanner, "the node tag of an element")?;
+        let mut corners = [0; 4];
+        for corner in &mut corners[..shape.corners()] {
+            *corner = self.node_tag()?;
         }
-        if kind == Kind::Triangle {
-            self.elements.add(self.scanner, self.nodes, element, vertices)?;
-            self.drop_repetition();
+        for _ in 0..kind.between() {
+            let node = self.node_tag()?;
+            self.elements.add_between(self.nodes, node);
+        }
+        self.elements.curved += usize::from(kind.between() > 0);
+        if matches!(shape, Shape::Triangle | Shape::Quadrangle) {
+            let corners = &corners[..shape.corners()];
+            self.elements.add_cell(self.scanner, self.nodes, element, corners)?;
+            self.elements.drop_repetition();
             if group != 0 {
-                self.elements.label_triangle(group);
+                self.elements.label_cell(group);
             }
             return Ok(());
         }
         self.elements.others += 1;
-        if let (Kind::Line, [a, b, _]) = (kind, vertices)
+        if let (Shape::Line, [a, b, ..]) = (shape, corners)
             && group != 0
         {
             self.elements.add_line(self.scanner, self.nodes, element, [a, b], group);
@@ -143,18 +150,7 @@ impl Reader<'_, '_> {
         Ok(())
     }
 
-    /// Drops the last triangle if it repeats the one before: for a surface in several physical groups Gmsh
-    /// writes each triangle once per group, one right behind the other (a negative group reverses it).
-    fn drop_repetition(&mut self) {
-        let sorted = |mut triangle: [usize; 3]| {
-            triangle.sort_unstable();
-            triangle
-        };
-        if let [.., before, last] = self.elements.triangles[..]
-            && sorted(before) == sorted(last)
-        {
-            self.elements.triangles.pop();
-            self.elements.tags.pop();
-        }
+    fn node_tag(&mut self) -> Result<u64, GmshError> {
+        read_tag(self.scanner, "the node tag of an element")
     }
 }

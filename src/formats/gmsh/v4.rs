@@ -1,6 +1,6 @@
 //! `$Nodes` and `$Elements` of MSH 4, one block for each entity of the geometry.
 
-use super::elements::{Elements, Kind, Label};
+use super::elements::{Elements, Kind, Label, Shape};
 use super::error::GmshError;
 use super::nodes::{Nodes, read_point};
 use super::scanner::Scanner;
@@ -57,23 +57,29 @@ pub(super) fn elements(scanner: &mut Scanner, layout: Layout, nodes: &Nodes) -> 
     for _ in 0..read_head(scanner, layout)? {
         let (dimension, entity) = read_entity(scanner, layout)?;
         let kind = Kind::read(scanner)?;
+        let shape = kind.shape;
         // Groups have members of their own dimension.
-        let label = (dimension == i32::from(kind.dimension())).then_some(entity as Label);
+        let label = (dimension == i32::from(shape.dimension())).then_some(entity as Label);
         let length = read_count(scanner, "elements of a block")?;
         scanner.end_record()?;
         for _ in 0..length {
             let element = scanner.size("an element tag")?;
-            let mut vertices = [0; 3];
-            for vertex in &mut vertices[..kind.nodes()] {
-                *vertex = scanner.size("the node tag of an element")?;
+            let mut corners = [0; 4];
+            for corner in &mut corners[..shape.corners()] {
+                *corner = scanner.size("the node tag of an element")?;
             }
-            if kind == Kind::Triangle {
-                elements.add(scanner, nodes, element, vertices)?;
-                label.into_iter().for_each(|label| elements.label_triangle(label));
+            for _ in 0..kind.between() {
+                let node = scanner.size("the node tag of an element")?;
+                elements.add_between(nodes, node);
+            }
+            elements.curved += usize::from(kind.between() > 0);
+            if matches!(shape, Shape::Triangle | Shape::Quadrangle) {
+                elements.add_cell(scanner, nodes, element, &corners[..shape.corners()])?;
+                label.into_iter().for_each(|label| elements.label_cell(label));
             } else {
                 elements.others += 1;
             }
-            if let (Kind::Line, Some(label), [a, b, _]) = (kind, label, vertices) {
+            if let (Shape::Line, Some(label), [a, b, ..]) = (shape, label, corners) {
                 elements.add_line(scanner, nodes, element, [a, b], label);
             }
             scanner.end_record()?;

@@ -1,5 +1,7 @@
 //! Names, and what carries them.
 
+use super::names::Names;
+
 /// Names, and the triangles or edges that carry them.
 ///
 /// Whatever carries the same names is one *part*. A member is filed under its part, not under each of its names: a million
@@ -8,7 +10,7 @@
 #[derive(Debug, Clone, Default)]
 pub(in crate::mesh) struct Family<M> {
     /// All different, in the order in which they were given.
-    names: Vec<String>,
+    names: Names,
     /// The numbers of the names of part `p`, from where those of part `p - 1` end, to `ends[p]`.
     carried: Vec<u32>,
     ends: Vec<u32>,
@@ -19,7 +21,7 @@ pub(in crate::mesh) struct Family<M> {
 impl<M: Copy + Ord> Family<M> {
     /// The names, for each part the numbers of those that it carries, and members with their parts, in any order.
     pub(in crate::mesh) fn new(
-        names: Vec<String>,
+        names: Names,
         parts: impl IntoIterator<Item = impl IntoIterator<Item = u32>>,
         mut members: Vec<(M, u32)>,
     ) -> Self {
@@ -33,7 +35,7 @@ impl<M: Copy + Ord> Family<M> {
         Self { names, carried, ends, members }
     }
 
-    pub(super) fn names(&self) -> &[String] {
+    pub(super) fn names(&self) -> &Names {
         &self.names
     }
 
@@ -62,7 +64,7 @@ impl<M: Copy + Ord> Family<M> {
         let mut numbers: Vec<u32> = filed.flat_map(|(_, part)| self.carried_by(*part)).copied().collect();
         numbers.sort_unstable();
         numbers.dedup();
-        numbers.into_iter().map(|number| self.names[number as usize].as_str()).collect()
+        numbers.into_iter().map(|number| self.names.get(number as usize)).collect()
     }
 
     /// The same with a further name, carried by `members` as by a part of their own.
@@ -70,7 +72,7 @@ impl<M: Copy + Ord> Family<M> {
         let part = self.ends.len() as u32;
         self.carried.push(self.names.len() as u32);
         self.ends.push(self.carried.len() as u32);
-        self.names.push(name);
+        self.names.push(&name);
         self.members.extend(members.into_iter().map(|member| (member, part)));
         // Most often two sorted runs, which a stable sort merges.
         self.members.sort();

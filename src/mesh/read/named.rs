@@ -3,9 +3,11 @@
 #[cfg(test)]
 mod tests;
 
+use std::fmt::Write as _;
+
 use crate::formats::gmsh::{GroupMembers, PhysicalGroup};
 use crate::mesh::Mesh;
-use crate::mesh::groups::{Family, Groups};
+use crate::mesh::groups::{Family, Groups, Names};
 
 /// Regions are the groups of surfaces, curves those of curves; groups that are called alike are one.
 pub(super) fn named_parts(mesh: &Mesh, groups: &[PhysicalGroup], mut members: GroupMembers) -> Groups {
@@ -24,7 +26,7 @@ fn family<M: Copy + Ord>(
     // Groups are in the order of their dimensions; parts without one of this dimension have no members here.
     let first = groups.partition_point(|group| group.dimension < dimension);
     let end = groups.partition_point(|group| group.dimension <= dimension);
-    let (names, number) = distinct(groups[first..end].iter().map(PhysicalGroup::to_string).collect());
+    let (names, number) = distinct(names(&groups[first..end]));
     let carried = |part: &[u32]| -> Vec<u32> {
         let here = part.iter().filter(|&&group| (first..end).contains(&(group as usize)));
         here.map(|&group| number[group as usize - first]).collect()
@@ -32,26 +34,44 @@ fn family<M: Copy + Ord>(
     Family::new(names, members.parts().map(carried), with_parts)
 }
 
+/// The names, with not a byte of memory more than they need.
+fn names(groups: &[PhysicalGroup]) -> Names {
+    let mut names = Names::with_capacity(groups.len(), groups.iter().map(PhysicalGroup::name_length).sum());
+    let mut name = String::new();
+    for group in groups {
+        name.clear();
+        // Writing to a text cannot fail.
+        let _ = write!(name, "{group}");
+        names.push(&name);
+    }
+    names
+}
+
 /// Each name once, where it comes first, and for each name that was given its number among them.
-fn distinct(mut names: Vec<String>) -> (Vec<String>, Vec<u32>) {
+fn distinct(names: Names) -> (Names, Vec<u32>) {
     let mut order: Vec<u32> = (0..names.len() as u32).collect();
-    order.sort_unstable_by(|&j, &k| names[j as usize].cmp(&names[k as usize]).then(j.cmp(&k)));
-    // First for each name the place of the first that is like it; then, in this order, its number.
+    let name = |k: u32| names.get(k as usize);
+    order.sort_unstable_by(|&j, &k| name(j).cmp(name(k)).then(j.cmp(&k)));
+    // First for each name the place of the first that is like it; then, in the order of the names, its number.
     let mut number = vec![0; names.len()];
-    for alike in order.chunk_by(|&j, &k| names[j as usize] == names[k as usize]) {
+    for alike in order.chunk_by(|&j, &k| name(j) == name(k)) {
         alike.iter().for_each(|&k| number[k as usize] = alike[0]);
     }
-    let mut kept = 0;
+    drop(order);
+    if (0..).zip(&number).all(|(k, &first)| k == first) {
+        return (names, number);
+    }
+    let mut kept = Names::default();
     for k in 0..names.len() {
         let first = number[k] as usize;
-        number[k] = if first == k { kept } else { number[first] };
         if first == k {
-            names.swap(kept as usize, k);
-            kept += 1;
+            number[k] = kept.len() as u32;
+            kept.push(names.get(k));
+        } else {
+            number[k] = number[first];
         }
     }
-    names.truncate(kept as usize);
-    (names, number)
+    (kept, number)
 }
 
 /// Those of the lines that are edges of the mesh, by their ends, the lower one first.

@@ -115,7 +115,8 @@ impl Bisection {
             child..child + origin[child..].iter().take_while(|&&parent| parent == t).count()
         };
         let groups = self.mesh.groups.inherited(children, self.mesh.points.len(), &parents);
-        let mesh = Mesh { points, triangles, kind, ancestry, groups };
+        let views = self.mesh.views.inherited(origin.iter().copied(), self.mesh.points.len(), &parents);
+        let mesh = Mesh { points, triangles, kind, ancestry, groups, views };
         // On a polygon the new mesh covers exactly what the old one did; a moved boundary may meet another one.
         self.mesh = Arc::new(if self.circle.is_some() { mesh.checked()? } else { mesh });
         self.refinement_edge = refinement_edge;

@@ -37,7 +37,10 @@ impl Mesh {
         let graded = Self::new(points, self.triangles.clone())?;
         let same_area = (graded.area() - self.area()).abs() <= AREA_TOLERANCE * self.area();
         if same_area && graded.triangles == self.triangles {
-            Ok(graded.with_ancestry(self.ancestry.clone()).with_groups(self.groups.clone()))
+            Ok(graded
+                .with_ancestry(self.ancestry.clone())
+                .with_groups(self.groups.clone())
+                .with_views(self.views.clone()))
         } else {
             Err(MeshError::NotGraded { exponent })
         }

@@ -37,7 +37,9 @@ impl Mesh {
             .collect();
         let ancestry = self.ancestry_of_refinement(&midpoints.ends);
         let groups = self.groups.inherited(|t| 4 * t..4 * t + 4, self.points.len(), &midpoints.ends);
-        let mesh = Mesh { points, triangles, kind, ancestry, groups };
+        let origins = (0..4 * self.triangles.len()).map(|t| t / 4);
+        let views = self.views.inherited(origins, self.points.len(), &midpoints.ends);
+        let mesh = Mesh { points, triangles, kind, ancestry, groups, views };
         self.check_parts(&mesh)?;
         Ok(Refinement { mesh, parents: midpoints.ends })
     }

@@ -197,7 +197,44 @@ def partitioned():
     write("partitioned_22", MSH22)
 
 
-def refused_elements():
+def views():
+    """Numbers at nodes and on all elements, a vector, and two time steps, in one file with the mesh before each; in the four encodings."""
+    new_model()
+    surface, curves = rectangle(size=0.5)
+    groups([surface], curves)
+    gmsh.model.mesh.generate(2)
+    nodes, coordinates, _ = gmsh.model.mesh.getNodes()
+    _, elements, _ = gmsh.model.mesh.getElements()
+    elements = [tag for tags in elements for tag in tags]
+    model = gmsh.model.getCurrent()
+    added = [gmsh.view.add(name) for name in ("pressure", "number", "wind", "history")]
+    pressure = [[-10 * x] for x in coordinates[::3]]
+    gmsh.view.addModelData(added[0], 0, model, "NodeData", nodes, pressure)
+    gmsh.view.addModelData(added[1], 0, model, "ElementData", elements, [[float(tag)] for tag in elements])
+    gmsh.view.addModelData(added[2], 0, model, "NodeData", nodes, [[1, 2, 3]] * len(nodes))
+    for step in (0, 1):
+        gmsh.view.addModelData(added[3], step, model, "NodeData", nodes, pressure, time=0.5 * step)
+    for version, digits in ((MSH22, "22"), (MSH41, "41")):
+        for binary, encoding in ((False, "ascii"), (True, "binary")):
+            gmsh.option.setNumber("Mesh.MshFileVersion", version)
+            gmsh.option.setNumber("Mesh.Binary", int(binary))
+            gmsh.option.setNumber("PostProcessing.Binary", int(binary))
+            for k, view in enumerate(added):
+                gmsh.view.write(view, os.path.join(HERE, f"views_{digits}_{encoding}.msh"), append=k > 0)
+
+
+def inclined():
+    """The rectangle in a plane of slope 3/4."""
+    new_model()
+    curves, loop = polygon([(0, 0, 0), (1.2, 0, 0), (1.2, 0.64, 0.48), (0, 0.64, 0.48)], 0.4)
+    surface = gmsh.model.geo.addPlaneSurface([loop])
+    gmsh.model.geo.synchronize()
+    groups([surface], curves)
+    gmsh.model.mesh.generate(2)
+    write("inclined_41")
+
+
+def other_elements():
     """Quadrangles, second-order triangles, tetrahedra; triangles that are not flat."""
     new_model(RecombineAll=1)
     surface, curves = rectangle(size=0.5)
@@ -235,7 +272,9 @@ def main():
     periodic_with_view()
     parametric()
     partitioned()
-    refused_elements()
+    views()
+    inclined()
+    other_elements()
     gmsh.finalize()
 
 

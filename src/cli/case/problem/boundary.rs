@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use toml::Value;
 
-use super::field::{ByName, function};
+use super::field::{ByName, datum, function, names_view};
 use crate::cli::case::section::Section;
 use crate::cli::failure::Failure;
 use crate::problem::{Membrane, Support};
@@ -72,11 +72,12 @@ fn support(value: &Value) -> Result<Support, String> {
     if value.as_str() == Some(FREE) {
         return Ok(Support::Free { traction: 0.0.into() });
     }
-    function(value).map(|height| Support::Fixed(height.into())).map_err(|problem| match value.as_str() {
+    datum(value).map(Support::Fixed).map_err(|problem| match value.as_str() {
         Some(text) if meant(text.trim(), [FREE]).is_some() => {
             format!("= \"{}\" is no height: write \"{FREE}\" where nothing holds the membrane", excerpt(text))
         }
         Some(_) => problem,
+        None if names_view(value) => problem,
         None => format!("must be a number, an expression in quotes, or \"{FREE}\""),
     })
 }

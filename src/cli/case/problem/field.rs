@@ -30,14 +30,8 @@ impl<T> ByName<T> {
         convert: &dyn Fn(&Value) -> Result<T, String>,
     ) -> Result<Option<Self>, Failure> {
         let Some(value) = section.take(key) else { return Ok(None) };
-        let no_views = format!(
-            "asks for a data view of the mesh file, which are not read yet: give a formula or values per {part}"
-        );
-        let convert = |key: &str, value: &Value| {
-            let converted =
-                if value.as_table().is_some_and(is_view) { Err(no_views.clone()) } else { convert(value) };
-            converted.map_err(|problem| section.error(key, problem))
-        };
+        let convert =
+            |key: &str, value: &Value| convert(value).map_err(|problem| section.error(key, problem));
         let one_of = format!("give one value, or one for each {part} in a table {{ name = ... }}");
         match value {
             Value::Array(_) => Err(section.error(key, format!("is a list: {one_of}"))),
@@ -60,14 +54,28 @@ fn is_view(table: &Table) -> bool {
     table.keys().eq([VIEW])
 }
 
-/// A number, a formula, or one of these for each region.
+/// Whether a value names a data view of the mesh file.
+pub(super) fn names_view(value: &Value) -> bool {
+    value.as_table().is_some_and(is_view)
+}
+
+/// A number, a formula, a data view, or one of these for each region.
 pub(super) fn field(section: &mut Section, key: &'static str) -> Result<Option<Field>, Failure> {
-    let values = ByName::read(section, key, "region", &function)?;
+    let values = ByName::read(section, key, "region", &datum)?;
     Ok(values.map(|ByName { parts, elsewhere }| match elsewhere {
-        Some(everywhere) if parts.is_empty() => everywhere.into(),
+        Some(everywhere) if parts.is_empty() => everywhere,
         Some(elsewhere) => Field::by_region(parts).elsewhere(elsewhere),
         None => Field::by_region(parts),
     }))
+}
+
+/// A number, an expression, or a data view of the mesh file.
+pub(super) fn datum(value: &Value) -> Result<Field, String> {
+    if !names_view(value) {
+        return function(value).map(Field::from);
+    }
+    let name = value.get(VIEW).and_then(Value::as_str);
+    name.map(Field::view).ok_or("must name a data view of the mesh file: { view = \"name\" }".into())
 }
 
 /// A number or an expression.
@@ -76,6 +84,9 @@ pub(super) fn function(value: &Value) -> Result<Function, String> {
         Value::String(source) => Expression::parse(source)
             .map(Function::from)
             .map_err(|error| format!("is no expression: {error}")),
+        _ if names_view(value) => {
+            Err("cannot be a data view: give a number or an expression in quotes".into())
+        }
         _ => as_number(value)
             .map(Function::Constant)
             .ok_or("must be a number or an expression in quotes".into()),

@@ -2,7 +2,7 @@
 
 use toml::Value;
 
-use super::field::function;
+use super::field;
 use crate::cli::case::section::{Section, as_number};
 use crate::cli::failure::Failure;
 use crate::problem::{ContactProblem, Function};
@@ -23,6 +23,16 @@ pub(super) fn pair(mut section: Section) -> Result<ContactProblem, Failure> {
     let problem = problem.map_err(|error| section.table_error(format!("[membranes]: {error}")))?;
     section.finish()?;
     Ok(problem)
+}
+
+/// A number or an expression. Data views are for the longer form.
+fn function(value: &Value) -> Result<Function, String> {
+    if field::names_view(value) {
+        return Err(
+            "is a data view, which no datum of [membranes] can be: write [[membrane]] for each".into()
+        );
+    }
+    field::function(value)
 }
 
 /// Two values, one for each membrane.

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::cli::case::CaseFile;
-use crate::problem::ContactProblem;
+use crate::problem::{ContactProblem, Field};
 
 /// A message that is longer than this is no message.
 const LONGEST_MESSAGE: usize = 300;
@@ -159,11 +159,18 @@ const REFUSED: &[(&str, &str, &[&str])] = &[
     (
         "\"-15\"",
         "{ view = \"pressure\" }",
-        &["`membrane[1].load`", "data view", "a formula or values per region"],
+        &["the data view `pressure` has to be in a mesh file", "`domain.mesh`"],
     ),
-    ("\"2 + x\"", "{ view = \"mu\" }", &["`membrane[1].tension.steel`", "data view", "give a formula"]),
-    ("ceiling = 0.5", "ceiling.view = \"top\"", &["`obstacle.ceiling`", "data view", "give a formula"]),
-    ("height = \"free\"", "height = { view = \"g\" }", &["`membrane[2].height`", "data view", "per curve"]),
+    ("\"-15\"", "{ view = 3 }", &["`membrane[1].load` must name a data view", "{ view = \"name\" }"]),
+    ("\"2 + x\"", "{ view = [] }", &["`membrane[1].tension.steel` must name a data view"]),
+    ("\"2 + x\"", "{ view = \"mu\", more = 1 }", &["`membrane[1].tension.steel` must be a number"]),
+    ("height = \"free\"", "height = { view = 1 }", &["`membrane[2].height` must name a data view"]),
+    (
+        "rim = 2.5",
+        "rim = { view = \"t\" }",
+        &["`membrane[1].traction.rim` cannot be a data view", "give a number"],
+    ),
+    ("{ rim = 2.5 }", "{ view = \"t\" }", &["`membrane[1].traction` cannot be a data view"]),
     // The numbers.
     ("4.0", "0", &["membrane[2]: tension mu2 is 0", "positive"]),
     ("rubber = 1.0", "rubber = -1.0", &["membrane[1]: tension mu1 is -1", "positive"]),
@@ -236,5 +243,35 @@ fn check_refusal(text: &str, says: &[&str]) {
     assert!(message.starts_with("case.toml: "), "{message}");
     for word in says {
         assert!(message.contains(word), "{message}: it does not say {word}");
+    }
+}
+
+#[test]
+fn a_data_view_may_stand_for_every_field() {
+    let text = STACK
+        .replace("shape = \"square\"", "mesh = \"plate.msh\"")
+        .replace("\"2 + x\"", "{ view = \"stiff\" }")
+        .replace("\"-15\"", "{ view = \"pressure\" }")
+        .replace("foundation = 7", "foundation.view = \"soil\"")
+        .replace("\"hole 1\" = 0.1", "\"hole 1\" = { view = \"rig\" }")
+        .replace("\"-0.3 + 0.1*x\"", "{ view = \"ground\" }")
+        .replace("ceiling = 0.5", "ceiling = { view = \"top\" }");
+    let problem = read(&text).unwrap();
+    assert_eq!(problem.views(), ["stiff", "pressure", "rig", "soil", "top", "ground"]);
+    assert!(matches!(&problem.membranes()[0].load, Field::View(name) if name == "pressure"));
+    assert_eq!(problem.regions(), ["rubber", "steel"]);
+    const PAIR: &str =
+        "[membranes]\ntension = [1, 2]\nload = [1, 2]\nheight = 1\n[domain]\nmesh = \"a.msh\"\n";
+    assert!(read(PAIR).is_ok());
+    for (key, from, to) in [
+        ("load[1]", "load = [1, 2]", "load = [{ view = \"p\" }, 2]"),
+        ("height", "height = 1", "height.view = \"p\""),
+    ] {
+        let pair = PAIR.replace(from, to);
+        let message = read(&pair).unwrap_err();
+        assert!(
+            message.contains(&format!("`membranes.{key}")) && message.contains("write [[membrane]]"),
+            "{message}"
+        );
     }
 }

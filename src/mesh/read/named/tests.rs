@@ -32,8 +32,8 @@ fn measures(mesh: &Mesh) -> Vec<(&str, f64)> {
     let area = |name: &str| groups.region(name).unwrap().map(|t| mesh.triangle_area(t)).sum();
     let edge = |[a, b]: [usize; 2]| distance_sq(mesh.points()[a], mesh.points()[b]).sqrt();
     let length = |name: &str| groups.curve(name).unwrap().map(edge).sum();
-    let regions = groups.regions().iter().map(|name| (name.as_str(), area(name)));
-    regions.chain(groups.curves().iter().map(|name| (name.as_str(), length(name)))).collect()
+    let regions = groups.regions().iter().map(|name| (name, area(name)));
+    regions.chain(groups.curves().iter().map(|name| (name, length(name)))).collect()
 }
 
 #[track_caller]
@@ -92,7 +92,7 @@ fn files_in_every_encoding_have_the_groups_that_they_state() {
             let mesh = read(file);
             assert_measures(&mesh, expected);
             assert_measures(&mesh.refine().unwrap().mesh, expected);
-            for name in mesh.groups().regions() {
+            for name in mesh.groups().regions().iter() {
                 let triangles = |groups: &Groups| groups.region(name).unwrap().collect::<Vec<_>>();
                 assert!(
                     triangles(mesh.groups()) == triangles(of_first.groups()) || expected.is_empty(),
