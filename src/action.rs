@@ -7,6 +7,7 @@ mod pairing;
 mod projection;
 mod recovery;
 mod residuals;
+mod rim;
 mod solution;
 mod stack;
 #[cfg(all(test, feature = "clarabel"))]
@@ -19,5 +20,6 @@ pub use pairing::{equilibrium, is_in_cone, pairing, project, variation};
 pub use projection::CutOff;
 pub use recovery::Action;
 pub use residuals::{Residual, Residuals};
+pub use rim::Rim;
 pub use solution::PairSolution;
 pub use stack::{GapSolution, StackSolution, certify_stack};

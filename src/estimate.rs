@@ -5,8 +5,10 @@ mod contact_bounds;
 mod lift;
 mod norms;
 mod residual;
+mod rim;
 mod spaces;
 mod stack;
+mod stack_norms;
 #[cfg(test)]
 mod tests;
 
@@ -15,7 +17,9 @@ pub use contact_bounds::ContactBounds;
 pub use lift::DualNorm;
 pub use norms::{ContactAreas, ErrorNorms, energy_error};
 pub use residual::residual_indicators;
+pub use rim::RimError;
 pub use stack::NoBound;
+pub use stack_norms::{GapError, StackNorms};
 
 use thiserror::Error;
 

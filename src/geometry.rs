@@ -1,10 +1,12 @@
 //! Lengths, areas and curves in the plane.
 
+mod hausdorff;
 mod inequalities;
 mod interface;
 mod ring;
 mod triangle;
 
+pub use hausdorff::Curve;
 pub use interface::Interface;
 
 pub(crate) use inequalities::{friedrichs, poincare};

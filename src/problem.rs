@@ -31,7 +31,9 @@ pub(crate) mod samples;
 mod stack;
 
 pub use builder::ContactProblemBuilder;
-pub use cases::{Case, CaseError, ExactSolution, Parameter, Range};
+pub use cases::{
+    Case, CaseError, Exact, ExactSolution, ExactStack, LineAction, NamedCase, Parameter, Range, StackCase,
+};
 pub use domain::Domain;
 pub use error::ProblemError;
 pub use expression::{Expression, ExpressionError};
@@ -48,5 +50,18 @@ impl ExactSolution {
     /// As [`ContactProblemBuilder::build`].
     pub fn problem(&self) -> Result<ContactProblem, ProblemError> {
         ContactProblem::pair(self.tension(), self.load_functions(), self.height_function())
+    }
+}
+
+impl Exact {
+    /// The problem that it solves.
+    ///
+    /// # Errors
+    /// As [`ExactSolution::problem`] and [`ExactStack::problem`].
+    pub fn problem(&self) -> Result<ContactProblem, ProblemError> {
+        match self {
+            Self::Pair(exact) => exact.problem(),
+            Self::Stack(exact) => exact.problem(),
+        }
     }
 }

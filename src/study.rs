@@ -9,6 +9,7 @@ mod fit;
 mod marking;
 mod prolongation;
 mod solve;
+mod stack;
 mod table;
 
 pub use accuracy::{AccuracyError, Bounded, Tolerance, solve_bounded};
@@ -17,4 +18,5 @@ pub use converge::{ConvergenceStudy, StudyError};
 pub use fit::exponent;
 pub use marking::mark;
 pub use solve::{SolveError, Solved, solve};
-pub use table::{LevelErrors, MEASURES, Measure, fitted_rate, markdown, rate};
+pub use stack::StackStudy;
+pub use table::{LevelErrors, MEASURES, Measure, fitted_rate, markdown, measures, rate};

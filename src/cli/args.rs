@@ -43,7 +43,7 @@ pub(crate) struct Arguments {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Solve a case and write solution.vtu, summary.json, membranes.png
+    /// Solve a case: solution.vtu, rim.vtp, summary.json, membranes.png
     Solve(SolveArguments),
     /// Show all residuals, of every solver or of a given answer
     Check(CheckArguments),

@@ -11,7 +11,7 @@ use crate::parallel::prelude::*;
 use crate::problem::{Domain, ExactSolution};
 
 /// Subdivisions of the triangles of `S_h` that a curve crosses: their parts are smaller than `h / 30`.
-const DEPTH: usize = 4;
+pub(super) const DEPTH: usize = 4;
 
 /// Uniform refinements of `S_h` on which the action is lifted.
 const LIFT_REFINEMENTS: usize = 1;
@@ -185,19 +185,19 @@ impl Integrals {
 
 /// An affine function, as its value at a point and its gradient.
 #[derive(Clone, Copy)]
-struct Affine {
+pub(super) struct Affine {
     origin: [f64; 2],
     value: f64,
-    gradient: [f64; 2],
+    pub(super) gradient: [f64; 2],
 }
 
 impl Affine {
     /// The function with these values at the corners of a triangle.
-    fn through(corners: [[f64; 2]; 3], values: [f64; 3]) -> Self {
+    pub(super) fn through(corners: [[f64; 2]; 3], values: [f64; 3]) -> Self {
         Self { origin: corners[0], value: values[0], gradient: gradient(corners, values) }
     }
 
-    fn at(&self, [x, y]: [f64; 2]) -> f64 {
+    pub(super) fn at(&self, [x, y]: [f64; 2]) -> f64 {
         self.value + self.gradient[0] * (x - self.origin[0]) + self.gradient[1] * (y - self.origin[1])
     }
 }

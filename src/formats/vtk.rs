@@ -1,4 +1,4 @@
-//! VTK's XML format for unstructured grids: binary, compressed by zlib; ParaView, PyVista and meshio read it.
+//! VTK's XML format for unstructured grids and polylines: binary, compressed by zlib; ParaView, PyVista and meshio read it.
 
 use std::borrow::Cow;
 use std::io::{self, Write};
@@ -104,43 +104,82 @@ pub(crate) fn write_grid(
     sections: &[(Location, &[DataArray])],
 ) -> io::Result<()> {
     let out = &mut out;
-    writeln!(out, r#"<?xml version="1.0"?>"#)?;
-    writeln!(
-        out,
-        r#"<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64" compressor="vtkZLibDataCompressor">"#
-    )?;
-    writeln!(out, "<UnstructuredGrid>")?;
+    begin(out, "UnstructuredGrid")?;
     writeln!(out, r#"<Piece NumberOfPoints="{}" NumberOfCells="{}">"#, points.len(), cells.count)?;
     for (location, arrays) in sections {
-        let section = match location {
-            Location::Points => "PointData",
-            Location::Cells => "CellData",
-        };
-        let has_lambda = arrays.iter().any(|array| array.name == "lambda");
-        let first = if has_lambda { r#" Scalars="lambda""# } else { "" };
-        writeln!(out, "<{section}{first}>")?;
-        for DataArray { name, kind, components, bytes } in *arrays {
-            // Of a scalar with a number of components, meshio makes an array of one column.
-            let components = if *components == 1 {
-                String::new()
-            } else {
-                format!(r#" NumberOfComponents="{components}""#)
-            };
-            let attributes = format!(r#"type="{kind}" Name="{}"{components}"#, escaped(name));
-            write_array(out, &attributes, bytes)?;
-        }
-        writeln!(out, "</{section}>")?;
+        write_section(out, *location, arrays)?;
     }
-    writeln!(out, "<Points>")?;
-    let coordinates: Vec<u8> =
-        points.iter().flat_map(|&[x, y]| [x, y, 0.0]).flat_map(f64::to_le_bytes).collect();
-    write_array(out, r#"type="Float64" Name="Points" NumberOfComponents="3""#, &coordinates)?;
-    writeln!(out, "</Points>\n<Cells>")?;
+    write_points(out, points)?;
+    writeln!(out, "<Cells>")?;
     write_array(out, r#"type="Int64" Name="connectivity""#, &cells.corners)?;
     write_array(out, r#"type="Int64" Name="offsets""#, &cells.ends)?;
     write_array(out, r#"type="UInt8" Name="types""#, &vec![cells.shape; cells.count])?;
     writeln!(out, "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>")?;
     out.flush()
+}
+
+/// Writes polylines, each through points of its own in their order, with arrays over the lines.
+pub(crate) fn write_lines(
+    mut out: impl Write,
+    lines: &[&[[f64; 2]]],
+    arrays: &[DataArray],
+) -> io::Result<()> {
+    let out = &mut out;
+    let points = lines.concat();
+    begin(out, "PolyData")?;
+    writeln!(
+        out,
+        r#"<Piece NumberOfPoints="{}" NumberOfVerts="0" NumberOfLines="{}" NumberOfStrips="0" NumberOfPolys="0">"#,
+        points.len(),
+        lines.len()
+    )?;
+    write_section(out, Location::Cells, arrays)?;
+    write_points(out, &points)?;
+    let ends = lines.iter().scan(0, |end, line| {
+        *end += line.len();
+        Some(*end)
+    });
+    writeln!(out, "<Lines>")?;
+    let numbers: Vec<u8> = (0..points.len()).flat_map(integer).collect();
+    write_array(out, r#"type="Int64" Name="connectivity""#, &numbers)?;
+    write_array(out, r#"type="Int64" Name="offsets""#, &ends.flat_map(integer).collect::<Vec<u8>>())?;
+    writeln!(out, "</Lines>\n</Piece>\n</PolyData>\n</VTKFile>")?;
+    out.flush()
+}
+
+fn begin(out: &mut impl Write, kind: &str) -> io::Result<()> {
+    writeln!(out, r#"<?xml version="1.0"?>"#)?;
+    writeln!(
+        out,
+        r#"<VTKFile type="{kind}" version="1.0" byte_order="LittleEndian" header_type="UInt64" compressor="vtkZLibDataCompressor">"#
+    )?;
+    writeln!(out, "<{kind}>")
+}
+
+fn write_section(out: &mut impl Write, location: Location, arrays: &[DataArray]) -> io::Result<()> {
+    let section = match location {
+        Location::Points => "PointData",
+        Location::Cells => "CellData",
+    };
+    let has_lambda = arrays.iter().any(|array| array.name == "lambda");
+    let first = if has_lambda { r#" Scalars="lambda""# } else { "" };
+    writeln!(out, "<{section}{first}>")?;
+    for DataArray { name, kind, components, bytes } in arrays {
+        // Of a scalar with a number of components, meshio makes an array of one column.
+        let components =
+            if *components == 1 { String::new() } else { format!(r#" NumberOfComponents="{components}""#) };
+        let attributes = format!(r#"type="{kind}" Name="{}"{components}"#, escaped(name));
+        write_array(out, &attributes, bytes)?;
+    }
+    writeln!(out, "</{section}>")
+}
+
+fn write_points(out: &mut impl Write, points: &[[f64; 2]]) -> io::Result<()> {
+    writeln!(out, "<Points>")?;
+    let coordinates: Vec<u8> =
+        points.iter().flat_map(|&[x, y]| [x, y, 0.0]).flat_map(f64::to_le_bytes).collect();
+    write_array(out, r#"type="Float64" Name="Points" NumberOfComponents="3""#, &coordinates)?;
+    writeln!(out, "</Points>")
 }
 
 /// One data array: a header of the numbers and sizes of the blocks, then the compressed blocks, each part in base64.
@@ -257,6 +296,23 @@ mod tests {
             assert_eq!(integers(&read_array(&file, "offsets").unwrap()), ends);
             assert_eq!(read_array(&file, "types").unwrap(), vec![VTK_POLYGON; count]);
             assert_eq!(read_array(&file, "another"), None);
+        }
+    }
+
+    #[test]
+    fn lines_are_read_back_with_their_points_and_numbers() {
+        let (loop_, line) = ([[0.0, 1.0], [2.0, 3.0], [0.0, 1.0]], [[4.0, 5.0], [6.0, 7.0]]);
+        for (lines, ends) in [(vec![&loop_[..], &line[..]], vec![3, 5]), (Vec::new(), Vec::new())] {
+            let mut file = Vec::new();
+            let numbers = DataArray::integers("gap", (1..).take(lines.len()));
+            write_lines(&mut file, &lines, &[numbers]).unwrap();
+            let file = String::from_utf8(file).unwrap();
+            assert!(file.contains(r#"type="PolyData""#));
+            assert!(file.contains(&format!(r#"NumberOfLines="{}""#, lines.len())), "{file}");
+            let expected: Vec<f64> = lines.concat().iter().flat_map(|&[x, y]| [x, y, 0.0]).collect();
+            assert_eq!(floats(&read_array(&file, "Points").unwrap()), expected);
+            assert_eq!(integers(&read_array(&file, "offsets").unwrap()), ends);
+            assert_eq!(read_array(&file, "gap").unwrap().len(), 8 * lines.len());
         }
     }
 }

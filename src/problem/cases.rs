@@ -13,6 +13,7 @@ mod l_shape;
 mod limits;
 mod parameter;
 mod solution;
+mod stack;
 mod strip;
 #[cfg(test)]
 mod tests;
@@ -22,8 +23,12 @@ use std::fmt;
 
 pub use parameter::{CaseError, Parameter, Range};
 pub use solution::ExactSolution;
+pub use stack::{ExactStack, LineAction, StackCase};
 
+use super::Domain;
+use crate::geometry::Interface;
 use crate::text::{excerpt, nearest};
+use decoupled::Decoupled;
 use description::Description;
 use parameter::{Values, listed};
 
@@ -78,12 +83,7 @@ impl Case {
     /// # Errors
     /// [`CaseError::UnknownCase`], with the nearest known name.
     pub fn from_name(name: &str) -> Result<Self, CaseError> {
-        let known = Self::ALL.into_iter().map(Self::name);
-        Self::ALL.into_iter().find(|case| case.name() == name).ok_or_else(|| CaseError::UnknownCase {
-            name: excerpt(name),
-            nearest: nearest(name, known.clone()).map_or("", |(known, _)| known),
-            known: listed(known),
-        })
+        find(name, Self::ALL.into_iter(), Self::name)
     }
 
     /// The name in case files.
@@ -122,7 +122,7 @@ impl Case {
         Ok(ExactSolution::new(values.tension(), build(&values)?))
     }
 
-    fn description(self) -> &'static Description {
+    fn description(self) -> &'static Description<dyn Decoupled> {
         match self {
             Self::Disk => &disk::DISK,
             Self::Strip => &strip::STRIP,
@@ -137,8 +137,141 @@ impl Case {
     }
 }
 
+/// The case called `name` among all.
+fn find<C: Copy>(
+    name: &str,
+    mut all: impl Iterator<Item = C> + Clone,
+    name_of: fn(C) -> &'static str,
+) -> Result<C, CaseError> {
+    let known = all.clone().map(name_of);
+    all.find(|&case| name_of(case) == name).ok_or_else(|| CaseError::UnknownCase {
+        name: excerpt(name),
+        nearest: nearest(name, known.clone()).map_or("", |(known, _)| known),
+        known: listed(known),
+    })
+}
+
 impl fmt::Display for Case {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name())
+    }
+}
+
+/// A case of either kind.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NamedCase {
+    /// A pair.
+    Pair(Case),
+    /// A stack.
+    Stack(StackCase),
+}
+
+impl NamedCase {
+    /// Every case, in the order in which they are listed.
+    pub fn all() -> impl Iterator<Item = Self> + Clone {
+        let stacks = StackCase::ALL.into_iter().map(Self::Stack);
+        Case::ALL.into_iter().map(Self::Pair).chain(stacks)
+    }
+
+    /// The case called `name`.
+    ///
+    /// # Errors
+    /// [`CaseError::UnknownCase`], with the nearest known name.
+    pub fn from_name(name: &str) -> Result<Self, CaseError> {
+        find(name, Self::all(), Self::name)
+    }
+
+    /// The name in case files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Pair(case) => case.name(),
+            Self::Stack(case) => case.name(),
+        }
+    }
+
+    /// What the case is about, in one line.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Pair(case) => case.title(),
+            Self::Stack(case) => case.title(),
+        }
+    }
+
+    /// The letter or number under which the mathematical notes list the case.
+    pub fn letter(self) -> &'static str {
+        match self {
+            Self::Pair(case) => case.letter(),
+            Self::Stack(case) => case.letter(),
+        }
+    }
+
+    /// The notation that the formulas use, as printable lines.
+    pub fn notation(self) -> &'static [&'static str] {
+        match self {
+            Self::Pair(_) => Case::NOTATION,
+            Self::Stack(_) => StackCase::NOTATION,
+        }
+    }
+
+    /// The solution and its data, as printable lines.
+    pub fn formulas(self) -> &'static [&'static str] {
+        match self {
+            Self::Pair(case) => case.formulas(),
+            Self::Stack(case) => case.formulas(),
+        }
+    }
+
+    /// What can be chosen.
+    pub fn parameters(self) -> &'static [Parameter] {
+        match self {
+            Self::Pair(case) => case.parameters(),
+            Self::Stack(case) => case.parameters(),
+        }
+    }
+
+    /// The exact solution for the given parameters; those not given have their default.
+    ///
+    /// # Errors
+    /// As [`Case::solution`] and [`StackCase::solution`].
+    pub fn solution(self, parameters: &BTreeMap<String, f64>) -> Result<Exact, CaseError> {
+        match self {
+            Self::Pair(case) => case.solution(parameters).map(Exact::Pair),
+            Self::Stack(case) => case.solution(parameters).map(Exact::Stack),
+        }
+    }
+}
+
+/// The exact solution of a case of either kind.
+#[derive(Debug, Clone)]
+pub enum Exact {
+    /// Of a pair.
+    Pair(ExactSolution),
+    /// Of a stack.
+    Stack(ExactStack),
+}
+
+impl Exact {
+    /// The domain.
+    pub fn domain(&self) -> Domain {
+        match self {
+            Self::Pair(exact) => exact.domain(),
+            Self::Stack(exact) => exact.domain(),
+        }
+    }
+
+    /// The regions that a mesh has to name: see [`ExactStack::regions`].
+    pub fn regions(&self) -> Vec<(&'static str, Interface)> {
+        match self {
+            Self::Pair(_) => Vec::new(),
+            Self::Stack(exact) => exact.regions(),
+        }
+    }
+
+    /// That of a pair.
+    pub fn pair(&self) -> Option<&ExactSolution> {
+        match self {
+            Self::Pair(exact) => Some(exact),
+            Self::Stack(_) => None,
+        }
     }
 }

@@ -6,9 +6,9 @@ use web_time::Instant;
 use super::LevelErrors;
 use super::accuracy::{AccuracyError, Tolerance, solve_bounded};
 use super::prolongation::Fields;
-use crate::action::{PairSolution, Rejected};
+use crate::action::{PairSolution, Rejected, Rim};
 use crate::discretization::{Discretization, DiscretizationError, PairDiscretization};
-use crate::estimate::{ErrorBound, ErrorNorms, LoadWarning, MeasureError, NoBound};
+use crate::estimate::{ErrorBound, ErrorNorms, LoadWarning, MeasureError, NoBound, RimError};
 use crate::mesh::{MeshError, MeshFamily};
 use crate::problem::{ContactProblem, ExactSolution, ProblemError};
 use crate::qp::TimeLimit;
@@ -105,6 +105,10 @@ impl ConvergenceStudy {
             let start = Instant::now();
             let norms = ErrorNorms::new(d, solution, exact)?;
             let quality = d.mesh().quality();
+            let rim = exact.rim().map(|curve| {
+                let rim = Rim::new(d.mesh(), &solution.gap(), solution.contact());
+                RimError::new(d.mesh(), &rim, &curve)
+            });
             let [first, second] = norms.h1;
             Ok(LevelErrors {
                 level,
@@ -115,16 +119,18 @@ impl ConvergenceStudy {
                 h1: first.hypot(second),
                 l2: norms.l2[0].hypot(norms.l2[1]),
                 energy: norms.energy,
-                bound: bound.total,
+                bound: Some(bound.total),
                 nodal: norms.nodal_max[0].max(norms.nodal_max[1]),
                 lambda_l2: norms.lambda_l2,
-                lambda_dual: norms.lambda_dual.value,
-                lambda_dual_estimate: norms.lambda_dual.estimate(),
+                lambda_dual: Some(norms.lambda_dual.value),
+                lambda_dual_estimate: Some(norms.lambda_dual.estimate()),
                 contact_area: norms.contact.error(),
                 quadrature: norms.quadrature,
                 iterations: solution.statistics().iterations,
                 solve_seconds: 0.0,
                 norm_seconds: start.elapsed().as_secs_f64(),
+                rim_distance: rim.and_then(|rim| rim.hausdorff),
+                jaccard: rim.map(|rim| rim.jaccard),
             })
         })
         .map(|(errors, solve_seconds)| LevelErrors { solve_seconds, ..errors })
@@ -152,7 +158,7 @@ impl ConvergenceStudy {
         }
         let d = PairDiscretization::new(&self.problem, self.family.mesh().clone())
             .map_err(DiscretizationError::from)?;
-        Ok(LoadWarning::all(&d, level.bound))
+        Ok(level.bound.map_or_else(Vec::new, |bound| LoadWarning::all(&d, bound)))
     }
 
     /// Refines (but for the first level), solves from the last level's solution, certifies, and hands the solution to

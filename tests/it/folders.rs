@@ -41,7 +41,8 @@ fn files_of_an_earlier_solution_go_with_it_and_those_of_others_stay() {
     run(folder.path(), "solve case.toml -q --dual").success();
     fs::write(folder.path().join("out/case/notes.txt"), "").unwrap();
     run(folder.path(), "solve case.toml -q --refine 1").success();
-    let expected = ["membranes.json", "membranes.png", "notes.txt", "solution.vtu", "summary.json"];
+    let expected =
+        ["membranes.json", "membranes.png", "notes.txt", "rim.vtp", "solution.vtu", "summary.json"];
     assert_eq!(results(&folder), expected);
 }
 
@@ -68,7 +69,8 @@ fn another_case_is_refused_by_every_command_and_told_to_takes_the_place_of_all()
     assert!(refused(&folder, "solve below/case.toml").contains("another case, case.toml"));
 
     run(folder.path(), "solve case.toml -q --overwrite").success();
-    let expected = ["membranes.json", "membranes.png", "notes.txt", "solution.vtu", "summary.json"];
+    let expected =
+        ["membranes.json", "membranes.png", "notes.txt", "rim.vtp", "solution.vtu", "summary.json"];
     assert_eq!(results(&folder), expected, "what the program has not written stays");
     run(folder.path(), "solve case.toml -q").success();
 }

@@ -29,6 +29,7 @@ mod readme;
 mod resume;
 mod same_bytes;
 mod stability;
+mod stack_cases;
 mod stacks;
 mod surroundings;
 mod terminal;

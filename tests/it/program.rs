@@ -20,7 +20,7 @@ const INTERIOR: u64 = 3 * 3;
 const UNLOADED_ENERGY: f64 = 0.5 * 0.05 * 0.05 + 2.0 * 0.125;
 
 /// What `solve` writes: the record of the case, and the results.
-const RESULTS: [&str; 4] = ["membranes.json", "membranes.png", "solution.vtu", "summary.json"];
+const RESULTS: [&str; 5] = ["membranes.json", "membranes.png", "rim.vtp", "solution.vtu", "summary.json"];
 
 /// Two membranes on the unit square, partly in contact.
 const CASE: &str = r#"
@@ -194,13 +194,13 @@ fn every_case_can_be_printed_and_solved() {
 }
 
 #[test]
-fn solve_writes_three_files_where_it_is_told() {
+fn solve_writes_four_files_where_it_is_told() {
     let folder = folder_with(CASE);
     let table = run(folder.path(), "solve plates.toml").success();
     let expected = ["out/", "out/plates/"].map(String::from).into_iter();
     let expected = expected.chain(RESULTS.map(|name| format!("out/plates/{name}")));
     assert_eq!(files(folder.path()), expected.chain(["plates.toml".into()]).collect::<Vec<_>>());
-    assert!(table.contains("out/plates/{solution.vtu, summary.json, membranes.png}"), "{table}");
+    assert!(table.contains("out/plates/{solution.vtu, rim.vtp, summary.json, membranes.png}"), "{table}");
     assert_eq!(lines_too_long(&table), [""; 0]);
 
     run(folder.path(), "solve plates.toml --out a/b/c").success();

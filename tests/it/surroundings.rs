@@ -48,7 +48,7 @@ fn is_whole(name: &str, bytes: &[u8]) -> bool {
     let text = || std::str::from_utf8(bytes).unwrap_or_default();
     match name.rsplit_once('.').map_or("", |(_, ending)| ending) {
         "json" => serde_json::from_slice::<Value>(bytes).is_ok(),
-        "vtu" => text().trim_end().ends_with("</VTKFile>"),
+        "vtu" | "vtp" => text().trim_end().ends_with("</VTKFile>"),
         "png" => bytes.ends_with(b"IEND\xaeB`\x82"),
         "npz" => zip::ZipArchive::new(Cursor::new(bytes)).is_ok(),
         "csv" => {

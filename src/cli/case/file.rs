@@ -11,7 +11,7 @@ use super::solver::{SolverSettings, solver};
 use crate::cli::failure::Failure;
 use crate::discretization::IntegrationRule;
 use crate::formats::open_regular;
-use crate::problem::{ContactProblem, Domain, ExactSolution, Pair};
+use crate::problem::{ContactProblem, Domain, Exact, Pair};
 use crate::text::excerpt;
 
 /// Longest case file, bytes: a polygon of half a million corners. Its tables take a few hundred times as much memory.
@@ -27,7 +27,7 @@ pub struct CaseFile {
     /// How its data are integrated.
     pub integration: IntegrationRule,
     /// The exact solution, for a built-in case.
-    pub exact: Option<ExactSolution>,
+    pub exact: Option<Exact>,
     /// Where the mesh comes from.
     pub mesh: MeshSource,
     /// Uniform refinements on top.

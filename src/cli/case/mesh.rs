@@ -7,7 +7,7 @@ use toml::Value;
 use super::section::Section;
 use crate::cli::failure::Failure;
 use crate::mesh::{MeshSize, Pattern};
-use crate::problem::{Domain, ExactSolution};
+use crate::problem::{Domain, Exact};
 use crate::text::excerpt;
 
 /// Cells of a structured mesh when the case file does not say.
@@ -35,7 +35,7 @@ pub enum MeshSource {
 /// `[domain]` and `[mesh]`.
 pub(super) fn mesh(
     top: &mut Section,
-    exact: Option<&ExactSolution>,
+    exact: Option<&Exact>,
     path: &Path,
 ) -> Result<(MeshSource, usize), Failure> {
     let mut place = top.section("domain")?;

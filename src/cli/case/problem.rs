@@ -13,11 +13,11 @@ use self::pair::pair;
 use self::stack::stack;
 use super::section::Section;
 use crate::cli::failure::Failure;
-use crate::problem::{Case, ContactProblem, ExactSolution};
+use crate::problem::{ContactProblem, Exact, NamedCase};
 use crate::text::excerpt;
 
 /// `case = "..."` and `[parameters]`.
-pub(super) fn exact_case(top: &mut Section) -> Result<Option<ExactSolution>, Failure> {
+pub(super) fn exact_case(top: &mut Section) -> Result<Option<Exact>, Failure> {
     let name = top.text("case")?;
     let mut section = top.section("parameters")?;
     let Some(name) = name else {
@@ -28,14 +28,14 @@ pub(super) fn exact_case(top: &mut Section) -> Result<Option<ExactSolution>, Fai
         }
         return Ok(None);
     };
-    let case = Case::from_name(&name)
+    let case = NamedCase::from_name(&name)
         .map_err(|error| top.error("case", format!("= \"{}\": {error}", excerpt(&name))))?;
     let parameters: BTreeMap<String, f64> = section.all_numbers()?.into_iter().collect();
     case.solution(&parameters).map(Some).map_err(|error| top.table_error(format!("[parameters]: {error}")))
 }
 
 /// `[membranes]`, or `[[membrane]]` and `[obstacle]`, or the problem of the built-in case.
-pub(super) fn problem(top: &mut Section, exact: Option<&ExactSolution>) -> Result<ContactProblem, Failure> {
+pub(super) fn problem(top: &mut Section, exact: Option<&Exact>) -> Result<ContactProblem, Failure> {
     if top.is_list("membranes") {
         return Err(top.error("membranes", "is one table for a pair: write [[membrane]] for one a membrane"));
     }

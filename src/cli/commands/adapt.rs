@@ -11,7 +11,7 @@ use crate::cli::args::AdaptArguments;
 use crate::cli::case::{CaseFile, SolverName};
 use crate::cli::failure::Failure;
 use crate::cli::run::clock::Clock;
-use crate::cli::run::files::{CHECKPOINT, HISTORY, LEVELS, MEMBRANES, MESH, Part, SOLUTION, SUMMARY};
+use crate::cli::run::files::{CHECKPOINT, HISTORY, LEVELS, MEMBRANES, MESH, Part, RIM, SOLUTION, SUMMARY};
 use crate::cli::run::folder::{Claim, Folder, Results};
 use crate::cli::run::input::{self, Input};
 use crate::cli::run::levels::{GOES_ON, KEPT, Levels, MEMORY, TIME, failure, settings, too_late};
@@ -25,6 +25,7 @@ use crate::estimate::LoadWarning;
 use crate::mesh::{DualMesh, Mesh, MeshError, SubTriangulation};
 use crate::output::{Seconds, Summary, read_checkpoint, write_checkpoint};
 use crate::pictures::{MeshPicture, RatesPicture, Series, render_rates, render_triangulation};
+use crate::problem::Exact;
 use crate::study::{AdaptiveLevel, AdaptiveStudy, StudyError, exponent};
 use crate::text::grouped;
 
@@ -147,7 +148,7 @@ fn study(setup: &Setup) -> AdaptiveStudy {
     AdaptiveStudy::new(
         problem.clone(),
         setup.case.domain().cloned(),
-        exact.clone(),
+        exact.as_ref().and_then(Exact::pair).cloned(),
         setup.family.mesh().clone(),
         solver(settings.name),
         options(settings),
@@ -322,7 +323,7 @@ fn values(levels: &[AdaptiveLevel], of: impl Fn(&AdaptiveLevel) -> Option<f64>) 
 /// What is written if there is time.
 fn files(pictures: &Pictures) -> Vec<&'static str> {
     let [membranes, history, mesh] = [MEMBRANES, HISTORY, MESH].map(|picture| pictures.files(picture));
-    [vec![SOLUTION, SUMMARY], membranes, vec![LEVELS], history, mesh].concat()
+    [vec![SOLUTION, RIM, SUMMARY], membranes, vec![LEVELS], history, mesh].concat()
 }
 
 /// The history for the eye.

@@ -13,17 +13,26 @@ use crate::cli::run::levels::{GOES_ON, KEPT, Levels, MEMORY, TIME, failure, sett
 use crate::cli::run::memory::Memory;
 use crate::cli::run::pictures::Pictures;
 use crate::cli::run::progress::Progress;
-use crate::cli::run::setup::{Setup, check_refinements, options, solver, too_early};
+use crate::cli::run::setup::{Setup, check_refinements, check_solver, options, solver, too_early};
 use crate::cli::run::watch::Watch;
 use crate::cli::terminal::{note, print, wrapped};
 use crate::estimate::LoadWarning;
 use crate::pictures::{RatesPicture, Series, render_rates};
+use crate::problem::Exact;
 use crate::qp::TimeLimit;
-use crate::study::{ConvergenceStudy, LevelErrors, MEASURES, fitted_rate, markdown, rate};
+use crate::study::{
+    ConvergenceStudy, LevelErrors, Measure, StackStudy, StudyError, fitted_rate, markdown, measures, rate,
+};
 use crate::text::grouped;
 
 /// The slopes to compare with: those of the theory, and that of a discontinuous action in L2.
 const SLOPES: [f64; 4] = [0.5, 1.0, 1.5, 2.0];
+
+/// Measures of the picture and the first table: those behind them are of the contact set.
+const OF_SET: [&str; 2] = ["rim, Hausdorff", "1 - Jaccard"];
+
+const SET: &str = "rim: Hausdorff distance of the rim of the contact set from the exact one; 1 - Jacc(ard): what the two sets do \
+                   not share, of what is in one of them; in several gaps, the worst";
 
 const INDEX: &str = "index: the bound of the error in the energy norm, guaranteed up to the quadrature of the loads, over \
                      that error";
@@ -37,7 +46,7 @@ pub(crate) fn run(arguments: &ConvergeArguments, watch: &Watch) -> Result<(), Fa
     let pictures = Pictures::new(&arguments.pictures, clock);
     let progress = Progress::new(arguments.case.quiet);
     let mut setup = Setup::new(&arguments.case, &progress)?;
-    let Some(exact) = setup.case.exact.take() else {
+    let Some(exact) = setup.case.exact.clone() else {
         let remedy =
             "give `case = \"...\"` in place of the membranes and [domain]; `membranes cases` lists them";
         return Err(Failure::Input(format!("{}: errors need a known solution: {remedy}", setup.name)));
@@ -62,10 +71,10 @@ pub(crate) fn run(arguments: &ConvergeArguments, watch: &Watch) -> Result<(), Fa
     let mut levels: Vec<LevelErrors> = kept.so_far();
     levels.truncate(arguments.levels);
 
-    let (title, settings) = (setup.case.title, &setup.case.solver);
-    let solver = solver(solver_name);
-    let mut study = ConvergenceStudy::new(exact, setup.family, solver, options(settings), settings.tolerance)
-        .map_err(|error| failure(&setup.name, &error, &setup.node_tags))?;
+    let title = setup.case.title.clone();
+    let membranes = if setup.case.pair().is_some() { 1 } else { setup.case.problem.membranes().len() };
+    let mut study = Study::new(exact, &setup)?;
+    let settings = &setup.case.solver;
     let name = setup.name.clone();
     clock.watch(watch, move || too_late(&name));
     let budget = Budget {
@@ -73,6 +82,7 @@ pub(crate) fn run(arguments: &ConvergeArguments, watch: &Watch) -> Result<(), Fa
         clock,
         memory: setup.memory,
         solver: solver_name,
+        membranes,
         time_limit: settings.time_limit,
     };
     let stop = add_levels(&setup.name, &mut study, &mut levels, &budget, &kept, &progress)?;
@@ -96,12 +106,71 @@ pub(crate) fn run(arguments: &ConvergeArguments, watch: &Watch) -> Result<(), Fa
     })
 }
 
+/// The study of a pair or of a stack.
+enum Study {
+    Pair(Box<ConvergenceStudy>),
+    Stack(Box<StackStudy>),
+}
+
+impl Study {
+    fn new(exact: Exact, setup: &Setup) -> Result<Self, Failure> {
+        let (settings, family) = (&setup.case.solver, setup.family.clone());
+        let of_error = |error: StudyError| failure(&setup.name, &error, &setup.node_tags);
+        match exact {
+            Exact::Pair(exact) => {
+                let solver = solver(settings.name);
+                ConvergenceStudy::new(exact, family, solver, options(settings), settings.tolerance)
+                    .map(|study| Self::Pair(Box::new(study)))
+                    .map_err(of_error)
+            }
+            Exact::Stack(exact) => {
+                check_solver(settings.name, &setup.case.problem)
+                    .map_err(|error| Failure::Input(format!("{}: {error}", setup.name)))?;
+                StackStudy::new(exact, family, solver(settings.name), options(settings))
+                    .map(|study| Self::Stack(Box::new(study)))
+                    .map_err(of_error)
+            }
+        }
+    }
+
+    fn set_time_limit(&mut self, time_limit: Option<TimeLimit>) {
+        match self {
+            Self::Pair(study) => study.set_time_limit(time_limit),
+            Self::Stack(study) => study.set_time_limit(time_limit),
+        }
+    }
+
+    fn next_level(&mut self) -> Result<LevelErrors, StudyError> {
+        match self {
+            Self::Pair(study) => study.next_level(),
+            Self::Stack(study) => study.next_level(),
+        }
+    }
+
+    fn skip_level(&mut self) -> Result<(), StudyError> {
+        match self {
+            Self::Pair(study) => study.skip_level(),
+            Self::Stack(study) => study.skip_level(),
+        }
+    }
+
+    /// What the bound of the last level may not know; of a stack there is no bound.
+    fn into_warnings(self, level: &LevelErrors) -> Result<Vec<LoadWarning>, StudyError> {
+        match self {
+            Self::Pair(study) => study.into_warnings(level),
+            Self::Stack(_) => Ok(Vec::new()),
+        }
+    }
+}
+
 /// What the run may take.
 struct Budget {
     levels: usize,
     clock: Clock,
     memory: Memory,
     solver: SolverName,
+    /// Of which each needs at most what a pair does; 1 for that.
+    membranes: usize,
     /// Seconds of each solve.
     time_limit: Option<TimeLimit>,
 }
@@ -111,7 +180,7 @@ impl Budget {
     fn stop(&self, last: &LevelErrors) -> Option<&'static str> {
         if !self.clock.allows(GROWTH * (last.solve_seconds + last.norm_seconds)) {
             Some(TIME)
-        } else if !self.memory.suffices(self.solver, GROWTH * last.vertices as f64) {
+        } else if !self.memory.suffices(self.solver, GROWTH * (self.membranes * last.vertices) as f64) {
             Some(MEMORY)
         } else {
             None
@@ -122,7 +191,7 @@ impl Budget {
 /// Adds levels to the known ones until there are as many as asked for, or says why there are fewer.
 fn add_levels(
     name: &str,
-    study: &mut ConvergenceStudy,
+    study: &mut Study,
     levels: &mut Vec<LevelErrors>,
     budget: &Budget,
     kept: &Levels,
@@ -165,17 +234,25 @@ fn write_picture(
     pictures: &Pictures,
 ) -> Result<Vec<&'static str>, Failure> {
     let h: Vec<f64> = levels.iter().map(|level| level.h).collect();
-    let values: Vec<Vec<f64>> =
-        MEASURES.iter().map(|measure| levels.iter().map(measure.of).collect()).collect();
+    let drawn = drawn(levels);
+    // What is not known on a level has no point there, as a zero.
+    let of_measure =
+        |measure: &Measure| levels.iter().map(|level| (measure.of)(level).unwrap_or(0.0)).collect();
+    let values: Vec<Vec<f64>> = drawn.iter().map(of_measure).collect();
     let title = title.to_owned();
     let draw = move || {
-        let names = MEASURES.map(|measure| typeset(measure.name));
+        let names: Vec<String> = drawn.iter().map(|measure| typeset(measure.name)).collect();
         let series: Vec<Series> =
             names.iter().zip(&values).map(|(name, values)| Series { name, values }).collect();
         let picture = RatesPicture { title: &title, abscissa: "h", h: &h, series: &series, slopes: &SLOPES };
         render_rates(&picture).map_err(|error| error.to_string())
     };
     pictures.write(RATES, draw, |file, bytes| folder.write(file, |out| out.write_all(bytes)))
+}
+
+/// The measures in the picture: errors of functions, and of the area.
+fn drawn(levels: &[LevelErrors]) -> Vec<Measure> {
+    measures(levels).into_iter().filter(|measure| !OF_SET.contains(&measure.name)).collect()
 }
 
 /// The name of a measure as a paper has it.
@@ -191,39 +268,52 @@ fn table(
     (folder, drawn): (&Path, &[&str]),
     left_out: &[&str],
 ) -> String {
-    let mut text = wrapped(title, 2) + "\n  vertices";
-    for measure in MEASURES {
-        text += &format!(" {:>8}", shortened(measure.name));
+    let bounded = levels.iter().any(|level| level.bound.is_some());
+    let measures = measures(levels);
+    let (of_functions, of_set): (Vec<Measure>, Vec<Measure>) =
+        measures.into_iter().partition(|measure| !OF_SET.contains(&measure.name));
+    let mut text = wrapped(title, 2) + "\n" + &rows(levels, &of_functions, bounded);
+    if !of_set.is_empty() {
+        text += "\n";
+        text += &rows(levels, &of_set, false);
+        text += &note(SET);
     }
-    text += "    index\n";
-    for (k, level) in levels.iter().enumerate() {
-        text += &format!("{:>10}", grouped(level.vertices));
-        for measure in MEASURES {
-            text += &format!(" {:>8.2e}", (measure.of)(level));
-        }
-        text += &format!(" {:>8}\n", index_text(level.effectivity()));
-        if k > 0 {
-            text += &format!("{:>10}", "rate");
-            for measure in MEASURES {
-                text += &format!(" {:>8}", rate_text(rate(measure, &levels[k - 1], level)));
-            }
-            text.push('\n');
-        }
+    if bounded {
+        text += &note(INDEX);
     }
-    if levels.len() > 2 {
-        text += &format!("{:>10}", "all levels");
-        for measure in MEASURES {
-            text += &format!(" {:>8}", rate_text(fitted_rate(measure, levels)));
-        }
-        text.push('\n');
-    }
-    text += &note(INDEX);
     text += &warning_lines(levels, warnings);
     if !left_out.is_empty() {
         text += &note(&format!("left out: {}", left_out_line(left_out)));
     }
     let files = [&[ERRORS, ERRORS_TABLE], drawn].concat().join(", ");
     text + &note(&format!("files: {}/{{{files}}}", folder.display()))
+}
+
+/// Some errors with their rates, and the effectivity of the bound.
+fn rows(levels: &[LevelErrors], measures: &[Measure], index: bool) -> String {
+    let mut text = String::from("  vertices");
+    for measure in measures {
+        text += &format!(" {:>8}", shortened(measure.name));
+    }
+    text += if index { "    index\n" } else { "\n" };
+    let rates = |rate: &dyn Fn(Measure) -> Option<f64>| -> String {
+        measures.iter().map(|&measure| format!(" {:>8}", rate_text(rate(measure)))).collect()
+    };
+    for (k, level) in levels.iter().enumerate() {
+        text += &format!("{:>10}", grouped(level.vertices));
+        for measure in measures {
+            let error = (measure.of)(level).map_or_else(|| "-".into(), |error| format!("{error:.2e}"));
+            text += &format!(" {error:>8}");
+        }
+        text += &if index { format!(" {:>8}\n", index_text(level.effectivity())) } else { "\n".into() };
+        if k > 0 {
+            text += &format!("{:>10}{}\n", "rate", rates(&|measure| rate(measure, &levels[k - 1], level)));
+        }
+    }
+    if levels.len() > 2 {
+        text += &format!("{:>10}{}\n", "all levels", rates(&|measure| fitted_rate(measure, levels)));
+    }
+    text
 }
 
 /// The loads of which the bound on the finest mesh may know too little.
@@ -248,5 +338,5 @@ fn rate_text(rate: Option<f64>) -> String {
 /// A heading that fits into a column.
 fn shortened(name: &str) -> String {
     let name = name.replace("lambda in ", "lam ").replace("H^-1", "H-1").replace("u at nodes", "nodes");
-    name.replace("contact area", "area")
+    name.replace("contact area", "area").replace("rim, Hausdorff", "rim").replace("1 - Jaccard", "1 - Jacc")
 }

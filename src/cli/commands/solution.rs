@@ -2,22 +2,22 @@
 
 use std::sync::Arc;
 
-use crate::action::ContactSolution;
+use crate::action::{ContactSolution, Rim};
 use crate::cli::case::{CaseFile, MeshSource};
 use crate::cli::failure::Failure;
-use crate::cli::run::files::{MEMBRANES, SOLUTION};
+use crate::cli::run::files::{MEMBRANES, RIM, SOLUTION};
 use crate::cli::run::folder::Results;
 use crate::cli::run::pictures::Pictures;
 use crate::discretization::Discretization;
 use crate::estimate::ErrorBound;
-use crate::output::{write_stack_vtu, write_vtu};
+use crate::output::{write_rim_vtp, write_stack_vtu, write_vtu};
 use crate::pictures::membranes::{self, Picture};
 use crate::pictures::stack::{self, StackPicture};
 
 /// The settings of a folder that holds one. Another mesh, solver, or tolerance for the same case takes the place of the one before.
 pub(super) const A_SOLUTION: &str = "a solution";
 
-/// Writes `solution.vtu`, and the picture of the membranes if there is time. What was left out is returned.
+/// Writes `solution.vtu`, `rim.vtp`, and the picture of the membranes if there is time. What was left out is returned.
 pub(super) fn write_solution(
     results: &mut Results,
     case: &CaseFile,
@@ -37,6 +37,16 @@ pub(super) fn write_solution(
         }
         _ => unreachable!("the solution is one of its discretization"),
     }
+    let rims: Vec<(usize, Rim)> = match solution {
+        ContactSolution::Pair(solution) => {
+            vec![(1, Rim::new(d.mesh(), &solution.gap(), solution.contact()))]
+        }
+        ContactSolution::Stack(solution) => {
+            let gaps = solution.gaps().iter();
+            gaps.map(|gap| (gap.number, Rim::new(d.mesh(), &gap.gap, &gap.contact))).collect()
+        }
+    };
+    results.write(RIM, |out| write_rim_vtp(rims.iter().map(|(gap, rim)| (*gap, rim)), out))?;
     let (title, d, solution) = (case.title.clone(), Arc::clone(d), solution.clone());
     let draw = move || match (&*d, &solution) {
         (Discretization::Stack(d), ContactSolution::Stack(solution)) => {

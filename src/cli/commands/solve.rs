@@ -15,7 +15,7 @@ use crate::cli::args::SolveArguments;
 use crate::cli::case::CaseFile;
 use crate::cli::failure::Failure;
 use crate::cli::run::clock::Clock;
-use crate::cli::run::files::{DUAL, FLUX, MEMBRANES, MESH, Part, SOLUTION, SUMMARY};
+use crate::cli::run::files::{DUAL, FLUX, MEMBRANES, MESH, Part, RIM, SOLUTION, SUMMARY};
 use crate::cli::run::folder::{Folder, Results};
 use crate::cli::run::pictures::Pictures;
 use crate::cli::run::progress::Progress;
@@ -178,7 +178,7 @@ fn write_dual(
 
 /// What is written if there is time.
 fn files(pictures: &Pictures, dual: bool) -> Vec<&'static str> {
-    let mut files = vec![SOLUTION, SUMMARY];
+    let mut files = vec![SOLUTION, RIM, SUMMARY];
     files.extend(pictures.files(MEMBRANES));
     if dual {
         files.extend([DUAL, FLUX]);

@@ -16,6 +16,7 @@ macro_rules! picture {
 
 pub(crate) const SUMMARY: &str = "summary.json";
 pub(crate) const SOLUTION: &str = "solution.vtu";
+pub(crate) const RIM: &str = "rim.vtp";
 pub(crate) const MEMBRANES: Picture = picture!("membranes");
 pub(crate) const DUAL: &str = "dual.vtu";
 pub(crate) const FLUX: &str = "flux.vtu";
@@ -64,6 +65,7 @@ impl Part {
             Self::Solution => &[
                 SUMMARY,
                 SOLUTION,
+                RIM,
                 MEMBRANES[0],
                 MEMBRANES[1],
                 MEMBRANES[2],

@@ -17,7 +17,7 @@ use crate::mesh::{
     GmshMesh, MAX_VERTICES, Mesh, MeshFamily, ReadError, estimated_vertices, generate, gmsh_nodes,
 };
 use crate::output::Seconds;
-use crate::problem::ContactProblem;
+use crate::problem::{ContactProblem, Exact};
 #[cfg(any(feature = "clarabel", feature = "osqp"))]
 use crate::solver::QpSolver;
 use crate::solver::{ActiveSet, Auto, ContactSolver, Multigrid, SolverError, SolverOptions};
@@ -151,7 +151,12 @@ fn make_mesh(name: &str, case: &CaseFile, further: usize, memory: Memory) -> Res
             if vertices <= MAX_VERTICES {
                 check(vertices)?;
             }
-            let mesh = generate(domain, *size).map_err(|error| bad_mesh(&error))?;
+            let mut mesh = generate(domain, *size).map_err(|error| bad_mesh(&error))?;
+            for (name, curve) in case.exact.iter().flat_map(Exact::regions) {
+                mesh = mesh
+                    .with_region(name, |[x, y]| curve.signed_distance(x, y) > 0.0)
+                    .map_err(|error| bad_mesh(&error))?;
+            }
             match *grading {
                 Some((point, exponent)) => {
                     MeshFamily::graded(mesh, point, exponent).map_err(|error| bad_mesh(&error))?

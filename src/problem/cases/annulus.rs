@@ -11,7 +11,7 @@ use crate::problem::Domain;
 
 const CENTRE: [f64; 2] = [0.5, 0.5];
 
-pub(super) static ANNULUS: Description = Description {
+pub(super) static ANNULUS: Description<dyn Decoupled> = Description {
     name: "annulus",
     title: "unit square, continuous action, neither gap nor action in an annulus",
     letter: "E",

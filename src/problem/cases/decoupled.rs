@@ -16,6 +16,11 @@ pub(super) trait Decoupled: Debug + Send + Sync {
     /// The curves across which the solution is less smooth.
     fn interfaces(&self) -> Vec<Interface>;
 
+    /// The curve that bounds the contact set: pressed on its negative side, apart on the positive one.
+    fn rim(&self) -> Option<Interface> {
+        None
+    }
+
     /// `w = u1 - u2`.
     fn gap(&self, x: f64, y: f64) -> Jet;
 

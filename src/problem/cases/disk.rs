@@ -9,7 +9,7 @@ use super::parameter::{MU1, MU2, Parameter, Values};
 use crate::geometry::Interface;
 use crate::problem::Domain;
 
-pub(super) static DISK: Description = Description {
+pub(super) static DISK: Description<dyn Decoupled> = Description {
     name: "disk",
     title: "unit disk, constant data, contact in the disk of radius R",
     letter: "B",
@@ -35,7 +35,7 @@ pub(super) static DISK: Description = Description {
     },
 };
 
-pub(super) static CIRCLE: Description = Description {
+pub(super) static CIRCLE: Description<dyn Decoupled> = Description {
     name: "circle",
     title: "unit square, contact in a disk, discontinuous action",
     letter: "D",
@@ -125,6 +125,10 @@ impl Decoupled for Disk {
         vec![self.zone.interface()]
     }
 
+    fn rim(&self) -> Option<Interface> {
+        Some(self.zone.interface())
+    }
+
     fn gap(&self, x: f64, y: f64) -> Jet {
         self.zone.gap(x, y)
     }
@@ -160,6 +164,10 @@ impl Decoupled for Circle {
 
     fn interfaces(&self) -> Vec<Interface> {
         vec![self.zone.interface()]
+    }
+
+    fn rim(&self) -> Option<Interface> {
+        Some(self.zone.interface())
     }
 
     fn gap(&self, x: f64, y: f64) -> Jet {

@@ -28,6 +28,17 @@ impl Jet {
         }
     }
 
+    /// `p q`.
+    pub(super) fn product(p: Self, q: Self) -> Self {
+        let [px, py] = p.gradient;
+        let [qx, qy] = q.gradient;
+        Self {
+            value: p.value * q.value,
+            gradient: [p.value * qx + q.value * px, p.value * qy + q.value * py],
+            laplacian: p.value * q.laplacian + 2.0 * (px * qx + py * qy) + q.value * p.laplacian,
+        }
+    }
+
     /// `c sin(pi x) sin(pi y)`, zero on the boundary of the unit square.
     pub(super) fn sine(c: f64, x: f64, y: f64) -> Self {
         let ((sin_x, cos_x), (sin_y, cos_y)) = ((PI * x).sin_cos(), (PI * y).sin_cos());

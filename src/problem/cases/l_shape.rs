@@ -17,7 +17,7 @@ const SUPPORT: f64 = 0.75;
 /// ... and the action starts here: biactive in between.
 const CONTACT: f64 = 1.25;
 
-pub(super) static L_SHAPE: Description = Description {
+pub(super) static L_SHAPE: Description<dyn Decoupled> = Description {
     name: "l-shape",
     title: "L-shape, corner singularity in the gap, contact beyond a biactive ring",
     letter: "F",
@@ -35,7 +35,7 @@ pub(super) static L_SHAPE: Description = Description {
     build: |values| Ok(Arc::new(LShape { action: values.reduced_tension() })),
 };
 
-pub(super) static L_SHAPE_FREE: Description = Description {
+pub(super) static L_SHAPE_FREE: Description<dyn Decoupled> = Description {
     name: "l-shape-free",
     title: "L-shape, corner singularity in both membranes, nowhere in contact",
     letter: "G",

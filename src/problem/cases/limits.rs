@@ -11,7 +11,7 @@ use crate::problem::Domain;
 
 const AMPLITUDE: Parameter = Parameter::any("c", 0.2, "height of membrane 2 in the middle");
 
-pub(super) static NO_CONTACT: Description = Description {
+pub(super) static NO_CONTACT: Description<dyn Decoupled> = Description {
     name: "no-contact",
     title: "unit square, nowhere in contact",
     letter: "H1",
@@ -24,7 +24,7 @@ pub(super) static NO_CONTACT: Description = Description {
     build: |values| Ok(Arc::new(NoContact { amplitude: values.get("c"), gain: values.get("k") })),
 };
 
-pub(super) static FULL_CONTACT: Description = Description {
+pub(super) static FULL_CONTACT: Description<dyn Decoupled> = Description {
     name: "full-contact",
     title: "unit square, everywhere in contact",
     letter: "H2",
@@ -33,7 +33,7 @@ pub(super) static FULL_CONTACT: Description = Description {
     build: full_contact,
 };
 
-pub(super) static BIACTIVE: Description = Description {
+pub(super) static BIACTIVE: Description<dyn Decoupled> = Description {
     name: "biactive",
     title: "unit square, everywhere in contact without action: tests for cycling",
     letter: "H3",

@@ -9,7 +9,7 @@ use crate::text::{Number, excerpt, nearest};
 #[non_exhaustive]
 pub enum CaseError {
     /// No case has this name.
-    #[error("there is no case `{name}`; the nearest is `{nearest}` (known: {known})")]
+    #[error("there is no case `{name}`; the nearest is `{nearest}`, and `membranes cases` lists all")]
     UnknownCase {
         /// The name asked for.
         name: String,
@@ -83,6 +83,14 @@ impl Parameter {
         Self { name, default, meaning, range: Range::Between(lower, upper) }
     }
 
+    pub(super) const fn whole(
+        name: &'static str,
+        [lower, default, upper]: [u32; 3],
+        meaning: &'static str,
+    ) -> Self {
+        Self { name, default: default as f64, meaning, range: Range::Whole(lower, upper) }
+    }
+
     /// The range as a condition, for instance `0 < R < 0.5`.
     pub fn condition(&self) -> String {
         let name = self.name;
@@ -91,12 +99,14 @@ impl Parameter {
             Range::Positive => format!("{name} > 0"),
             Range::NonNegative => format!("{name} >= 0"),
             Range::Between(lower, upper) => format!("{lower} < {name} < {upper}"),
+            Range::Whole(lower, upper) => format!("{name} a whole number, {lower} to {upper}"),
         }
     }
 }
 
 /// The finite values that a parameter may take.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum Range {
     /// Every finite number.
     Any,
@@ -106,6 +116,8 @@ pub enum Range {
     NonNegative,
     /// Strictly between the two bounds.
     Between(f64, f64),
+    /// A whole number between the two bounds, or one of them.
+    Whole(u32, u32),
 }
 
 impl Range {
@@ -117,6 +129,9 @@ impl Range {
                 Self::Positive => value > 0.0,
                 Self::NonNegative => value >= 0.0,
                 Self::Between(lower, upper) => lower < value && value < upper,
+                Self::Whole(lower, upper) => {
+                    value.fract() == 0.0 && f64::from(lower) <= value && value <= f64::from(upper)
+                }
             }
     }
 }
@@ -156,6 +171,16 @@ impl Values {
     /// The value of a parameter of this case.
     pub(super) fn get(&self, name: &str) -> f64 {
         *self.values.get(name).expect("a case asks only for its own parameters")
+    }
+
+    /// The values of several parameters.
+    pub(super) fn all<const N: usize>(&self, names: [&str; N]) -> [f64; N] {
+        names.map(|name| self.get(name))
+    }
+
+    /// The value of a parameter that is a whole number.
+    pub(super) fn count(&self, name: &str) -> usize {
+        self.get(name) as usize
     }
 
     /// `[mu1, mu2]`.
@@ -219,6 +244,9 @@ mod tests {
             (Range::Any, f64::NEG_INFINITY, 0.0),
             (Range::Positive, 0.0, 1e-9),
             (Range::NonNegative, -1e-9, 0.0),
+            (Range::Whole(1, 3), 1.5, 3.0),
+            (Range::Whole(1, 3), 4.0, 1.0),
+            (Range::Whole(1, 3), 0.0, 2.0),
         ];
         for (range, bad, good) in cases {
             assert!(!range.contains(bad) && range.contains(good), "{range:?}");

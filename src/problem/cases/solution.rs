@@ -37,6 +37,12 @@ impl ExactSolution {
         self.decoupled.interfaces()
     }
 
+    /// The curve that bounds the contact set, the membranes pressed on the negative side of it and apart on the positive one;
+    /// `None` where there is no such curve, for instance with a biactive set in between.
+    pub fn rim(&self) -> Option<Interface> {
+        self.decoupled.rim()
+    }
+
     /// The displacements `[u1, u2]` at a point.
     pub fn u(&self, x: f64, y: f64) -> [f64; 2] {
         self.membranes(x, y).map(|u| u.value)

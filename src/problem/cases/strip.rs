@@ -9,7 +9,7 @@ use super::parameter::{MU1, MU2, Parameter};
 use crate::geometry::Interface;
 use crate::problem::Domain;
 
-pub(super) static STRIP: Description = Description {
+pub(super) static STRIP: Description<dyn Decoupled> = Description {
     name: "strip",
     title: "unit square, contact left of x0, exact at the nodes of aligned meshes",
     letter: "C",
@@ -58,6 +58,10 @@ impl Decoupled for Strip {
 
     fn interfaces(&self) -> Vec<Interface> {
         vec![Interface::VerticalLine { x: self.end }]
+    }
+
+    fn rim(&self) -> Option<Interface> {
+        Some(Interface::VerticalLine { x: self.end })
     }
 
     fn gap(&self, x: f64, _y: f64) -> Jet {

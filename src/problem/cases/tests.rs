@@ -2,6 +2,7 @@
 
 mod equations;
 mod points;
+mod stacks;
 
 use std::f64::consts::PI;
 
@@ -49,7 +50,7 @@ fn loads_agree_with_their_closed_forms() {
     let close = |a: f64, b: f64| (a - b).abs() <= ROUNDING * (1.0 + b.abs());
     for (_, solution) in solutions().into_iter().filter(|(name, _)| name.starts_with("disk []")) {
         // mu = (1, 3), q = 10, s0 = 4, hence f = (1 - 10, 3 + 10) everywhere.
-        for [x, y] in interior(&solution) {
+        for [x, y] in interior(&solution.domain(), &solution.interfaces()) {
             let [f1, f2] = solution.load(x, y);
             assert!(close(f1, -9.0) && close(f2, 13.0) && !close(f2, -13.0), "{f1} {f2}");
         }
@@ -117,7 +118,7 @@ fn values_are_finite_also_slightly_outside_and_at_the_corner() {
 fn functions_of_the_problem_are_those_of_the_solution() {
     for (name, solution) in solutions() {
         let ([f1, f2], g) = (solution.load_functions(), solution.height_function());
-        let [x, y] = interior(&solution)[0];
+        let [x, y] = interior(&solution.domain(), &solution.interfaces())[0];
         assert_eq!([f1.eval(x, y).unwrap(), f2.eval(x, y).unwrap()], solution.load(x, y), "{name}");
         assert_eq!(g.eval(x, y).unwrap(), solution.height(x, y), "{name}");
         assert_ne!(f1.eval(x, y), f2.eval(x, y), "{name}: the loads of the two membranes differ");
@@ -162,4 +163,18 @@ fn descriptions_fit_a_terminal() {
         let others = Case::ALL.into_iter().filter(|other| *other != case);
         assert!(others.clone().all(|o| o.name() != case.name() && o.letter() != case.letter()), "{case}");
     }
+}
+
+#[test]
+fn contact_and_pressure_end_at_the_rim() {
+    let mut rims = 0;
+    for (name, solution) in solutions() {
+        let Some(rim) = solution.rim() else { continue };
+        rims += 1;
+        for [x, y] in interior(&solution.domain(), &solution.interfaces()) {
+            let (inside, [u1, u2]) = (rim.signed_distance(x, y) < 0.0, solution.u(x, y));
+            assert_eq!((u1 == u2, solution.lambda(x, y) > 0.0), (inside, inside), "{name}: ({x}, {y})");
+        }
+    }
+    assert_eq!(rims, 9, "disk, strip, and circle, three choices each");
 }

@@ -4,7 +4,6 @@ use std::f64::consts::TAU;
 
 use crate::geometry::Interface;
 use crate::problem::Domain;
-use crate::problem::cases::ExactSolution;
 
 /// How far a point has to be from every interface and from the corner: a thousand steps of the differences.
 const CLEARANCE: f64 = 1e-2;
@@ -34,14 +33,13 @@ fn inside(domain: &Domain, x: f64, y: f64, margin: f64) -> bool {
 }
 
 /// Points of the domain away from its boundary (hence from the corner of an L) and from every interface.
-pub(super) fn interior(solution: &ExactSolution) -> Vec<[f64; 2]> {
-    let domain = solution.domain();
+pub(super) fn interior(domain: &Domain, curves: &[Interface]) -> Vec<[f64; 2]> {
     let numbers: Vec<f64> = uniform(2000).map(|t| 4.0 * t - 2.0).collect();
     let mut points: Vec<_> = numbers.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect();
     points.extend(numbers.chunks_exact(2).map(|pair| [(pair[0] + 2.0) / 4.0, (pair[1] + 2.0) / 4.0]));
     points.retain(|&[x, y]| {
         let smooth = |curve: &Interface| curve.signed_distance(x, y).abs() > CLEARANCE;
-        inside(&domain, x, y, CLEARANCE) && solution.interfaces().iter().all(smooth)
+        inside(domain, x, y, CLEARANCE) && curves.iter().all(smooth)
     });
     assert!(points.len() > 200, "only {} points", points.len());
     points
@@ -74,8 +72,8 @@ pub(super) fn boundary(domain: &Domain) -> Vec<[f64; 2]> {
 }
 
 /// Points on the interfaces inside the domain, each with the normal of the curve.
-pub(super) fn on_interfaces(solution: &ExactSolution) -> Vec<([f64; 2], [f64; 2])> {
-    let on = |curve: Interface| {
+pub(super) fn on_interfaces(domain: &Domain, curves: &[Interface]) -> Vec<([f64; 2], [f64; 2])> {
+    let on = |&curve: &Interface| {
         uniform(60).map(move |t| match curve {
             Interface::Circle { centre, radius } => {
                 let (sin, cos) = (TAU * t).sin_cos();
@@ -84,6 +82,5 @@ pub(super) fn on_interfaces(solution: &ExactSolution) -> Vec<([f64; 2], [f64; 2]
             Interface::VerticalLine { x } => ([x, t], [1.0, 0.0]),
         })
     };
-    let (domain, curves) = (solution.domain(), solution.interfaces());
-    curves.into_iter().flat_map(on).filter(|([x, y], _)| inside(&domain, *x, *y, CLEARANCE)).collect()
+    curves.iter().flat_map(on).filter(|([x, y], _)| inside(domain, *x, *y, CLEARANCE)).collect()
 }

@@ -1,5 +1,6 @@
 //! Stacks with known solutions, by every solver; section 6 of the notes on stacks.
 
+use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
 use super::{TOLERANCE, posed, solve_by, solvers};
@@ -8,7 +9,7 @@ use crate::discretization::{IntegrationRule, PairDiscretization, StackDiscretiza
 use crate::mesh::samples::irregular;
 use crate::mesh::{Mesh, Pattern, rectangle};
 use crate::numeric::largest;
-use crate::problem::{ContactProblem, Field, Function, Membrane};
+use crate::problem::{ContactProblem, ExactStack, Function, Membrane, StackCase};
 use crate::solver::{ActiveSet, Auto, ContactSolver, SolverOptions};
 
 /// Rounding of displacements of size one on meshes of some thousand triangles.
@@ -19,247 +20,130 @@ fn strip_mesh(cells: usize) -> Mesh {
     rectangle([0.0, 0.0], [1.0, 0.5], [2 * cells, cells], Pattern::Right).unwrap()
 }
 
-/// A membrane that is fixed on the left and on the right of a strip, and free on its long sides.
-fn across(membrane: Membrane, [left, right]: [f64; 2]) -> Membrane {
-    membrane.free().height_on("left", left).height_on("right", right)
+/// The exact solution of a case with its defaults.
+pub(super) fn exact(case: StackCase) -> ExactStack {
+    case.solution(&BTreeMap::new()).unwrap()
 }
 
-/// The largest distance of the displacement of membrane `i` from `u(x)`.
-fn distance(mesh: &Mesh, solution: &StackSolution, i: usize, u: impl Fn(f64) -> f64) -> f64 {
-    let found = &solution.displacement()[i - 1];
-    largest(mesh.points().iter().zip(found).map(|(&[x, _], found)| (found - u(x)).abs()))
+/// The largest distance of a displacement from the exact one at a vertex.
+pub(super) fn distance(mesh: &Mesh, solution: &StackSolution, exact: &ExactStack) -> f64 {
+    let of_membrane = |(i, u): (usize, &Vec<f64>)| {
+        let pairs = mesh.points().iter().zip(u);
+        largest(pairs.map(|(&[x, y], u)| (u - exact.u(i, x, y)).abs()))
+    };
+    largest((1..).zip(solution.displacement()).map(of_membrane))
 }
 
-/// The largest distance of the action in gap `k` from `lambda(x)`, where that is not `None`.
-fn action_distance(mesh: &Mesh, s: &StackSolution, k: usize, lambda: impl Fn(f64) -> Option<f64>) -> f64 {
-    let found = &s.gap(k).unwrap().lambda;
-    let points = mesh.points().iter().zip(found);
-    largest(points.filter_map(|(&[x, _], found)| Some((found - lambda(x)?).abs())))
+/// The largest distance of the action in gap `k` of a strip from the mean of the exact one on both sides, at vertices that are
+/// not held.
+fn action_distance(mesh: &Mesh, solution: &StackSolution, exact: &ExactStack, k: usize) -> f64 {
+    const BESIDE: f64 = 1e-9;
+    let found = &solution.gap(k).unwrap().lambda;
+    let inside = mesh.points().iter().zip(found).filter(|([x, _], _)| 0.0 < *x && *x < 1.0);
+    largest(inside.map(|(&[x, y], found)| {
+        let [left, right] = [-BESIDE, BESIDE].map(|beside| exact.lambda(k, x + beside, y));
+        (found - 0.5 * (left + right)).abs()
+    }))
 }
 
-/// `value` on either side of a line, the mean on it.
-fn step(x: f64, at: f64, [below, above]: [f64; 2]) -> f64 {
-    if (x - at).abs() < 1e-9 {
-        0.5 * (below + above)
-    } else if x < at {
-        below
-    } else {
-        above
-    }
-}
-
-/// Continuation of a parabola `c0 + c1 x + c2 x^2` beyond `at` with the curvature `k`.
-#[derive(Clone, Copy)]
-struct Parabola([f64; 3]);
-
-impl Parabola {
-    fn at(&self, x: f64) -> f64 {
-        self.0[0] + x * (self.0[1] + x * self.0[2])
-    }
-
-    fn continued(&self, at: f64, curvature: f64) -> Self {
-        let slope = self.0[1] + 2.0 * self.0[2] * at;
-        let c1 = slope - curvature * at;
-        Self([self.at(at) - at * (c1 + 0.5 * curvature * at), c1, 0.5 * curvature])
-    }
-}
-
-/// S3: three membranes in a strip, nodally exact, contact of all up to 1/4 and of the upper two up to 1/2.
+/// S3, S8: three membranes, and two over a floor.
 #[test]
-fn three_membranes_in_a_strip_are_nodally_exact() {
-    let (mu, f) = ([1.0, 2.0, 3.0], [-8.0, 2.0, 12.0]);
-    let (k_a, k_b) = (-(f[0] + f[1] + f[2]) / 6.0, -(f[0] + f[1]) / 3.0);
-    let together = Parabola([0.2, 0.3, 0.5 * k_a]);
-    let upper_two = together.continued(0.25, k_b);
-    let curves = [
-        upper_two.continued(0.5, -f[0] / mu[0]),
-        upper_two.continued(0.5, -f[1] / mu[1]),
-        together.continued(0.25, -f[2] / mu[2]),
-    ];
-    let exact = move |i: usize, x: f64| match i {
-        1 | 2 if x <= 0.5 => if x <= 0.25 { together } else { upper_two }.at(x),
-        3 if x <= 0.25 => together.at(x),
-        _ => curves[i - 1].at(x),
-    };
-    let mut stack = ContactProblem::stack();
-    for i in 1..=3 {
-        stack =
-            stack.membrane(across(Membrane::new(mu[i - 1]).load(f[i - 1]), [0.0, 1.0].map(|x| exact(i, x))));
-    }
-    let mesh = strip_mesh(8);
-    let d = posed(&stack.build().unwrap(), &mesh);
-    for (name, mut solver) in solvers() {
-        let solution = solve_by(&mut *solver, &d);
-        for i in 1..=3 {
-            let off = distance(&mesh, &solution, i, |x| exact(i, x));
-            assert!(off < ROUNDING, "{name}: membrane {i} is off by {off:e}");
-            assert!(distance(&mesh, &solution, i, |x| exact(4 - i, x) + x) > 1e-3, "no other function");
+fn strips_of_contact_are_nodally_exact() {
+    for case in [StackCase::ThreeStrips, StackCase::StripOnFloor] {
+        let (mesh, exact) = (strip_mesh(8), exact(case));
+        let d = posed(&exact.problem().unwrap(), &mesh);
+        for (name, mut solver) in solvers() {
+            let solution = solve_by(&mut *solver, &d);
+            let off = distance(&mesh, &solution, &exact);
+            assert!(off < ROUNDING, "{case}, {name}: {off:e}");
+            for k in exact.gaps() {
+                let off = action_distance(&mesh, &solution, &exact, k);
+                assert!(off < 1e4 * ROUNDING, "{case}, {name}: the action in gap {k} is off by {off:e}");
+            }
+            assert!(solution.imbalance() < ROUNDING);
         }
-        // Held vertices have no row, so lambda is zero there.
-        let inside = |x: f64, lambda: f64| (0.0 < x && x < 1.0).then_some(lambda);
-        let first = |x: f64| {
-            inside(
-                x,
-                if x < 0.375 {
-                    step(x, 0.25, [-k_a - f[0], -k_b - f[0]])
-                } else {
-                    step(x, 0.5, [-k_b - f[0], 0.0])
-                },
-            )
-        };
-        let second = |x: f64| inside(x, step(x, 0.25, [f[2] + 3.0 * k_a, 0.0]));
-        for (k, off) in [
-            (1, action_distance(&mesh, &solution, 1, first)),
-            (2, action_distance(&mesh, &solution, 2, second)),
-        ] {
-            assert!(off < 1e4 * ROUNDING, "{name}: the action in gap {k} is off by {off:e}");
-        }
-        assert!(solution.imbalance() < ROUNDING);
+        // The negative test: another choice is seen.
+        let other = case.solution(&[("x1".to_owned(), 0.6)].into()).unwrap();
+        let solution = solve_by(&mut ActiveSet, &d);
+        assert!(
+            distance(&mesh, &solution, &other) > 1e-3 && action_distance(&mesh, &solution, &other, 1) > 1.0
+        );
     }
 }
 
-/// S7: the tension of the upper membrane jumps inside the contact zone, which carries a line action of 0.45 there.
-#[test]
-fn a_jump_of_the_tension_in_contact_carries_a_line_action() {
-    let mesh = strip_mesh(8).with_region("right part", |[x, _]| x > 0.25).unwrap();
-    let slope = |x: f64| -2.0 + 2.0 * x;
-    // (mu1 + mu2) u' = slope; beyond 1/2 the membranes are apart.
-    let together = |x: f64| -> f64 {
-        let integral = |x: f64| -2.0 * x + x * x;
-        if x <= 0.25 {
-            integral(x) / 2.0
-        } else {
-            integral(0.25) / 2.0 + (integral(x) - integral(0.25)) / 5.0
-        }
-    };
-    let apart = |mu: f64, f: f64, x: f64| {
-        let s = x - 0.5;
-        together(0.5) + slope(0.5) / 5.0 * s - f / mu * s * s / 2.0
-    };
-    let u = move |i: usize, x: f64| match (x <= 0.5, i) {
-        (true, _) => together(x),
-        (false, 1) => apart(4.0, -4.0, x),
-        (false, _) => apart(1.0, 2.0, x),
-    };
-    let tension = Field::by_region([("right part", 4.0)]).elsewhere(1.0);
-    let problem = ContactProblem::stack()
-        .membrane(across(Membrane::new(tension).load(-4.0), [u(1, 0.0), u(1, 1.0)]))
-        .membrane(across(Membrane::new(1.0).load(2.0), [u(2, 0.0), u(2, 1.0)]))
-        .build()
-        .unwrap();
-    let d = posed(&problem, &mesh);
-    for (name, mut solver) in solvers() {
-        let solution = solve_by(&mut *solver, &d);
-        for i in 1..=2 {
-            let off = distance(&mesh, &solution, i, |x| u(i, x));
-            assert!(off < ROUNDING, "{name}: membrane {i} is off by {off:e}");
-        }
-        let gap = solution.gap(1).unwrap();
-        for (a, &[x, y]) in mesh.points().iter().enumerate().filter(|(_, p)| (p[0] - 0.25).abs() < 1e-9) {
-            let half_lengths = if y == 0.0 || y == 0.5 { 1.0 / 32.0 } else { 1.0 / 16.0 };
-            let expected = 0.5 * (3.0 + 2.4) * d.dual_area()[a] + 0.45 * half_lengths;
-            // On the edges y = 0 and y = 1/2 the two sides of the line have not the same area.
-            let off = (gap.force[a] - expected).abs();
-            assert!(off < if y == 0.0 || y == 0.5 { 1e-3 } else { ROUNDING }, "{name}: ({x}, {y}): {off:e}");
-        }
-        // The line action as a density, away from the ends of the line.
-        let on_line = |(_, [x, y]): &(usize, &[f64; 2])| (x - 0.25).abs() < 1e-9 && *y > 0.1 && *y < 0.4;
-        for (a, _) in mesh.points().iter().enumerate().filter(on_line) {
-            assert!((gap.line_density[a] - 0.45).abs() < 1e-9, "{name}: {}", gap.line_density[a]);
-        }
-    }
+/// Half the length of the edges of a line `x = const` that end at a vertex of it.
+fn half_lengths(y: f64) -> f64 {
+    if y == 0.0 || y == 0.5 { 1.0 / 32.0 } else { 1.0 / 16.0 }
 }
 
-/// S8: two membranes over a floor at zero.
+/// S7, S10: the action has a density along a line where a tension jumps in contact, and on a free end under line loads.
 #[test]
-fn two_membranes_over_a_floor_are_nodally_exact() {
-    let (x2, x1) = (0.25, 0.5);
-    let k_b = 7.0 / 3.0;
-    let block = Parabola([0.5 * k_b * x2 * x2, -k_b * x2, 0.5 * k_b]);
-    let [u1, u2] = [block.continued(x1, 6.0), block.continued(x1, 0.5)];
-    let u = move |i: usize, x: f64| match (x, i) {
-        (x, _) if x <= x2 => 0.0,
-        (x, _) if x <= x1 => block.at(x),
-        (x, 1) => u1.at(x),
-        (x, _) => u2.at(x),
-    };
-    let problem = ContactProblem::stack()
-        .membrane(across(Membrane::new(1.0).load(-6.0), [0.0, u(1, 1.0)]))
-        .membrane(across(Membrane::new(2.0).load(-1.0), [0.0, u(2, 1.0)]))
-        .floor(0.0)
-        .build()
-        .unwrap();
-    let mesh = strip_mesh(8);
-    let d = posed(&problem, &mesh);
-    for (name, mut solver) in solvers() {
-        let solution = solve_by(&mut *solver, &d);
-        for i in 1..=2 {
-            let off = distance(&mesh, &solution, i, |x| u(i, x));
-            assert!(off < ROUNDING, "{name}: membrane {i} is off by {off:e}");
+fn nodal_forces_have_the_line_actions_in_them() {
+    for case in [StackCase::TensionJump, StackCase::FreeEnd] {
+        let exact = exact(case);
+        let [line] = exact.line_actions(1).try_into().unwrap();
+        let mut mesh = strip_mesh(8);
+        for (name, curve) in exact.regions() {
+            mesh = mesh.with_region(name, |[x, y]| curve.signed_distance(x, y) > 0.0).unwrap();
         }
-        let inside = |x: f64, lambda: f64| (0.0 < x && x < 1.0).then_some(lambda);
-        let between = |x: f64| {
-            inside(x, if x < 0.375 { step(x, x2, [6.0, 11.0 / 3.0]) } else { step(x, x1, [11.0 / 3.0, 0.0]) })
-        };
-        let floor = |x: f64| inside(x, step(x, x2, [7.0, 0.0]));
-        assert!(action_distance(&mesh, &solution, 1, between) < 1e4 * ROUNDING, "{name}");
-        assert!(action_distance(&mesh, &solution, 2, floor) < 1e4 * ROUNDING, "{name}");
-    }
-}
-
-/// S10: line loads at a free end in contact.
-#[test]
-fn line_loads_on_a_free_end_in_contact_are_a_line_action() {
-    let sheet = |load: f64, traction: f64| {
-        Membrane::new(1.0).load(load).free().height_on("left", 0.0).traction_on("right", traction)
-    };
-    let problem =
-        ContactProblem::stack().membrane(sheet(-2.0, -1.0)).membrane(sheet(2.0, 0.0)).build().unwrap();
-    let mesh = strip_mesh(8);
-    let d = posed(&problem, &mesh);
-    for (name, mut solver) in solvers() {
-        let solution = solve_by(&mut *solver, &d);
-        for i in 1..=2 {
-            let off = distance(&mesh, &solution, i, |x| -0.5 * x);
-            assert!(off < ROUNDING, "{name}: membrane {i} is off by {off:e}");
+        let d = posed(&exact.problem().unwrap(), &mesh);
+        for (name, mut solver) in solvers() {
+            let solution = solve_by(&mut *solver, &d);
+            let off = distance(&mesh, &solution, &exact);
+            assert!(off < ROUNDING, "{case}, {name}: {off:e}");
+            let gap = solution.gap(1).unwrap();
+            let on_line = |x: f64, y: f64| line.curve.signed_distance(x, y).abs() < 1e-9;
+            for (a, &[x, y]) in mesh.points().iter().enumerate().filter(|(_, p)| on_line(p[0], p[1])) {
+                let beside = [-1e-9, 1e-9].map(|beside| exact.lambda(1, x + beside, y));
+                let mean = 0.5 * (beside[0] + beside[1]);
+                let expected = mean * d.dual_area()[a] + line.density * half_lengths(y);
+                // At the ends of a line inside, its two sides have not the same area.
+                let at_end = x < 1.0 && (y == 0.0 || y == 0.5);
+                let off = (gap.force[a] - expected).abs();
+                assert!(off < if at_end { 1e-3 } else { ROUNDING }, "{case}, {name}: ({x}, {y}): {off:e}");
+                // As a density, away from the ends of the line.
+                if 0.1 < y && y < 0.4 {
+                    let density = gap.line_density[a];
+                    assert!((density - line.density).abs() < 1e-9, "{case}, {name}: {density}");
+                }
+            }
+            let elsewhere = mesh
+                .points()
+                .iter()
+                .enumerate()
+                .filter(|(_, p)| !on_line(p[0], p[1]) && 0.1 < p[1] && p[1] < 0.4);
+            assert!(elsewhere.into_iter().all(|(a, _)| gap.line_density[a] == 0.0), "{case}, {name}");
         }
-        let gap = solution.gap(1).unwrap();
-        for (a, &[x, y]) in mesh.points().iter().enumerate().filter(|(_, p)| p[0] > 0.0) {
-            let edge = if x < 1.0 {
-                0.0
-            } else if y == 0.0 || y == 0.5 {
-                1.0 / 32.0
-            } else {
-                1.0 / 16.0
-            };
-            let off = (gap.force[a] - 2.0 * d.dual_area()[a] - 0.5 * edge).abs();
-            assert!(off < ROUNDING, "{name}: ({x}, {y}): {off:e}");
-        }
-        for (a, _) in
-            mesh.points().iter().enumerate().filter(|(_, p)| p[0] == 1.0 && p[1] > 0.1 && p[1] < 0.4)
-        {
-            assert!((gap.line_density[a] - 0.5).abs() < 1e-9, "{name}: {}", gap.line_density[a]);
-        }
-        let inside = mesh.points().iter().enumerate().filter(|(_, p)| p[0] < 1.0 && p[1] > 0.1 && p[1] < 0.4);
-        assert!(inside.into_iter().all(|(a, _)| gap.line_density[a] == 0.0));
     }
 }
 
 /// S9: a foundation and a floor; the lumped foundation is of second order.
 #[test]
 fn a_foundation_over_a_floor_converges_at_second_order() {
-    let (c, q, x0) = (20.0f64, 10.0, 0.25);
-    let u = move |x: f64| if x <= x0 { 0.0 } else { q / c * ((c.sqrt() * (x - x0)).cosh() - 1.0) };
-    let sheet = across(Membrane::new(1.0).load(-q).foundation(c), [0.0, u(1.0)]);
-    let problem = ContactProblem::obstacle(sheet, 0.0).unwrap();
+    let exact = exact(StackCase::Foundation);
     let errors = [4, 8, 16].map(|cells| {
         let mesh = strip_mesh(cells);
-        let solution = solve_by(&mut ActiveSet, &posed(&problem, &mesh));
-        distance(&mesh, &solution, 1, u)
+        let solution = solve_by(&mut ActiveSet, &posed(&exact.problem().unwrap(), &mesh));
+        distance(&mesh, &solution, &exact)
     });
     for pair in errors.windows(2) {
         let rate = (pair[0] / pair[1]).log2();
         assert!((1.8..2.2).contains(&rate), "{errors:?}");
+    }
+}
+
+/// S13: contact without any action; solvers stop, and displacements are right.
+#[test]
+fn biactive_stacks_end_by_every_solver() {
+    let exact = exact(StackCase::BiactiveStack);
+    let mesh = rectangle([0.0; 2], [1.0; 2], [16; 2], Pattern::Right).unwrap();
+    let d = posed(&exact.problem().unwrap(), &mesh);
+    for (name, mut solver) in solvers() {
+        let solution = solve_by(&mut *solver, &d);
+        let off = distance(&mesh, &solution, &exact);
+        assert!(off < 5e-3, "{name}: {off:e}");
+        let gaps = solution.gaps();
+        assert!(gaps.iter().all(|gap| gap.total_force < 1e-2), "{name}");
     }
 }
 

@@ -3,12 +3,14 @@
 
 use std::f64::consts::PI;
 
+use super::exact::{distance, exact};
 use super::{solve_by, solvers};
 use crate::action::StackSolution;
 use crate::discretization::{IntegrationRule, StackDiscretization};
+use crate::geometry::Interface;
 use crate::mesh::{Mesh, Pattern, rectangle};
 use crate::numeric::largest;
-use crate::problem::{ContactProblem, Function, Membrane};
+use crate::problem::{ContactProblem, Function, Membrane, StackCase};
 use crate::solver::Auto;
 
 fn grid(lower: [f64; 2], upper: [f64; 2], cells: [usize; 2]) -> Mesh {
@@ -91,28 +93,11 @@ fn journal_bearing() {
     }
 }
 
-/// The radius of contact with the ball, `a^2 (ln 2 - ln a) = 1 - a^2`.
-const CONTACT_RADIUS: f64 = 0.697_965_148_223_374;
-
-fn ball(x: f64, y: f64) -> f64 {
-    const SWITCH: f64 = 0.9;
-    let r = x.hypot(y);
-    let height = |r: f64| (1.0 - r * r).sqrt();
-    if r <= SWITCH { height(r) } else { height(SWITCH) - SWITCH / height(SWITCH) * (r - SWITCH) }
-}
-
-fn over_the_ball(x: f64, y: f64) -> f64 {
-    let r = x.hypot(y);
-    let a = CONTACT_RADIUS;
-    let slope = a * a / (1.0 - a * a).sqrt();
-    if r <= a { ball(x, y) } else { slope * (2f64.ln() - r.ln()) }
-}
-
 /// p4pdes obstacle.c and PETSc snes ex9: average and largest errors, and how many vertices inside are in contact.
 #[test]
 fn membrane_over_a_ball() {
-    let sheet = Membrane::new(1.0).height(Function::from_fn(over_the_ball));
-    let problem = ContactProblem::obstacle(sheet, Function::from_fn(ball)).unwrap();
+    let exact = exact(StackCase::Ball);
+    let problem = exact.problem().unwrap();
     let rows =
         [(4, 4.531e-2, 1.635e-1, None), (8, 3.076e-3, 1.334e-2, Some(9)), (16, 2.707e-3, 1.428e-2, Some(29))];
     for (cells, average, worst, active) in rows {
@@ -124,7 +109,7 @@ fn membrane_over_a_ball() {
                 .points()
                 .iter()
                 .zip(&solution.displacement()[0])
-                .map(|(&[x, y], u)| (u - over_the_ball(x, y)).abs())
+                .map(|(&[x, y], u)| (u - exact.u(1, x, y)).abs())
                 .collect();
             let mean = errors.iter().sum::<f64>() / errors.len() as f64;
             assert!((mean / average - 1.0).abs() < 1e-3, "{name}, {cells}: {mean:e}");
@@ -139,16 +124,14 @@ fn membrane_over_a_ball() {
 /// The contact radius and the displacement over the ball converge.
 #[test]
 fn contact_with_the_ball_converges() {
-    let sheet = Membrane::new(1.0).height(Function::from_fn(over_the_ball));
-    let problem = ContactProblem::obstacle(sheet, Function::from_fn(ball)).unwrap();
+    let exact = exact(StackCase::Ball);
+    let Some(Interface::Circle { radius, .. }) = exact.rim(1) else { panic!("the rim is a circle") };
     let errors = [16, 32, 64].map(|cells| {
         let mesh = grid([-2.0, -2.0], [2.0, 2.0], [cells; 2]);
-        let d = StackDiscretization::new(&problem, mesh.clone()).unwrap();
+        let d = StackDiscretization::new(&exact.problem().unwrap(), mesh.clone()).unwrap();
         let solution = solve_by(&mut Auto, &d);
-        let gap = solution.gap(1).unwrap();
-        let radius = (gap.contact_area / PI).sqrt();
-        let u = mesh.points().iter().zip(&solution.displacement()[0]);
-        (largest(u.map(|(&[x, y], u)| (u - over_the_ball(x, y)).abs())), (radius - CONTACT_RADIUS).abs())
+        let found = (solution.gap(1).unwrap().contact_area / PI).sqrt();
+        (distance(&mesh, &solution, &exact), (found - radius).abs())
     });
     let rate = (errors[0].0 / errors[2].0).log2() / 2.0;
     assert!(rate > 1.5, "{errors:?}");
