@@ -12,7 +12,7 @@ mod stack_norms;
 #[cfg(test)]
 mod tests;
 
-pub use bound::{BoundParts, ErrorBound, ErrorBounds, LoadWarning};
+pub use bound::{BoundParts, DataWarning, ErrorBound, ErrorBounds};
 pub use contact_bounds::ContactBounds;
 pub use lift::DualNorm;
 pub use norms::{ContactAreas, ErrorNorms, energy_error};

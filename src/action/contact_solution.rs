@@ -91,6 +91,11 @@ impl ContactSolution {
         self.gap(k).map(|gap| gap.lambda)
     }
 
+    /// The area of the dual cells in contact, in all gaps together.
+    pub fn contact_area(&self) -> f64 {
+        self.gaps().iter().map(|gap| gap.contact_area).sum()
+    }
+
     /// The force of all actions together.
     pub fn total_force(&self) -> f64 {
         self.gaps().iter().map(|gap| gap.total_force).sum()

@@ -46,8 +46,8 @@ pub type Displacements = Vec<Vec<f64>>;
 /// let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [16, 16], Pattern::Right)?;
 /// let values: Vec<f64> = mesh.points().iter().map(|&[x, y]| -10.0 * x * y).collect();
 /// let sheet = Membrane::new(1.0).load(Field::PerVertex(values.into()));
-/// let d = StackDiscretization::new(&ContactProblem::obstacle(sheet, -0.05)?, mesh)?;
-/// let solution = certify_stack(&d, Auto.solve_stack(&d, &SolverOptions::default())?, 1e-8)?;
+/// let d = Discretization::new(&ContactProblem::obstacle(sheet, -0.05)?, mesh)?;
+/// let solution = certify(&d, Auto.solve(&d, &SolverOptions::default())?, 1e-8)?;
 /// assert!(solution.gap(1).is_some_and(|gap| gap.total_force > 0.0));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -252,24 +252,6 @@ impl StackDiscretization {
     /// The sizes that residuals are measured against.
     pub fn scales(&self) -> Scales {
         self.scales
-    }
-
-    /// The edges along which the action in gap `k` may have a density of its own: those where one of the membranes is free or its
-    /// tension jumps from one region to another, and those where an obstacle is given by another region; the lower end first.
-    pub(crate) fn lines(&self, k: usize) -> Vec<[usize; 2]> {
-        let last = self.membranes.len() + 1;
-        let of_layer = |layer: usize| match layer {
-            0 => [self.obstacle_lines[0].as_slice(), &[]],
-            _ if layer == last => [self.obstacle_lines[1].as_slice(), &[]],
-            _ => {
-                let MembraneData { held, tension_borders, .. } = &self.membranes[layer - 1];
-                [held.free_edges.as_slice(), tension_borders]
-            }
-        };
-        let mut lines = [of_layer(k), of_layer(k + 1)].concat().concat();
-        lines.sort_unstable();
-        lines.dedup();
-        lines
     }
 
     /// Where the first unknown of membrane `i` (from 1) is.

@@ -25,7 +25,7 @@ use std::sync::OnceLock;
 
 use cells::{Cells, Sums};
 use trace::Trace;
-pub use warning::LoadWarning;
+pub use warning::DataWarning;
 
 use super::MeasureError;
 use crate::action::{Action, PairSolution, extend_to_boundary};
@@ -58,7 +58,7 @@ pub struct ErrorBound {
     /// [`PairDiscretization::quadrature_difference`]. Unit: square root of an energy.
     pub quadrature_difference: Vec<f64>,
     /// The loads of which the quadrature may know too little for the bound to hold.
-    pub warnings: Vec<LoadWarning>,
+    pub warnings: Vec<DataWarning>,
 }
 
 /// What a bound consists of, each part as a norm of its own; the bound is at most the sum of the parts, with `boundary` and
@@ -124,7 +124,7 @@ impl ErrorBound {
         Self {
             total,
             quadrature_difference: d.quadrature_difference().to_vec(),
-            warnings: LoadWarning::all(d, total),
+            warnings: DataWarning::all(d, total),
             energy_norm: sums.energy_sq.sqrt(),
             parts: BoundParts {
                 flux: sums.flux_sq.sqrt(),

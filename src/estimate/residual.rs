@@ -15,7 +15,7 @@ use crate::mesh::HalfEdges;
 ///
 /// over the interior edges `e` of `K`. The root of their sum is of the order of the energy error; the factor is not known, so it
 /// bounds nothing. `displacement` and `lambda` are over vertices; with `lambda_h`, which is zero on the cells of the boundary, the
-/// estimator does not fall where the membranes touch there, with [`ErrorBound::action`](super::ErrorBound::action) it does. Shape: `triangles`. Linear time.
+/// estimator does not fall where the membranes touch there, with [`ErrorBound::actions`](super::ErrorBound::actions) it does. Shape: `triangles`. Linear time.
 ///
 /// # Errors
 /// [`MeasureError::OtherMesh`] when the vectors are not over the vertices.

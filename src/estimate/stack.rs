@@ -25,7 +25,7 @@ mod rest;
 #[cfg(test)]
 mod tests;
 
-use super::{BoundParts, ErrorBound, LoadWarning};
+use super::{BoundParts, DataWarning, ErrorBound};
 use crate::action::StackSolution;
 use crate::discretization::{IntegrationRule, StackDiscretization};
 use crate::mesh::VertexTriangles;
@@ -94,7 +94,7 @@ impl ErrorBound {
             actions: actions.gaps.into_iter().map(|gap| gap.lambda).collect(),
             indicators,
             quadrature_difference: d.quadrature_difference(),
-            warnings: LoadWarning::of_stack(d, total),
+            warnings: DataWarning::of_stack(d, total),
         }
     }
 }

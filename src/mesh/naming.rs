@@ -1,9 +1,10 @@
-//! Names for parts of a mesh, by where they lie.
+//! Names for parts of a mesh, by where they lie, and for numbers on it.
 
 use thiserror::Error;
 
 use super::Mesh;
 use super::topology::boundary_edges;
+use super::views::{ViewError, ViewPlace};
 use crate::text::excerpt;
 
 /// Why a part of a mesh cannot be called like this.
@@ -43,6 +44,24 @@ pub enum GroupError {
 }
 
 impl Mesh {
+    /// The same mesh with a further data view, one value for each vertex or triangle. Linear time.
+    ///
+    /// # Errors
+    /// [`ViewError`] when another view is called like it, and for values that are not finite or not as many.
+    pub fn with_view(
+        mut self,
+        name: impl Into<String>,
+        place: ViewPlace,
+        values: impl IntoIterator<Item = f64>,
+    ) -> Result<Self, ViewError> {
+        let expected = match place {
+            ViewPlace::Vertices => self.points.len(),
+            ViewPlace::Triangles => self.triangles.len(),
+        };
+        self.views.add(name.into(), place, values, expected)?;
+        Ok(self)
+    }
+
     /// The same mesh, in which the triangles whose barycentres are `inside` are the region `name`. Linear time.
     ///
     /// It may overlap with others. See [`Groups`](super::Groups).

@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use thiserror::Error;
 
-use super::Mesh;
 pub use crate::formats::gmsh::ViewPlace;
 use crate::formats::gmsh::{GmshView, ViewData};
 use crate::text::excerpt;
@@ -36,7 +35,7 @@ impl View {
     }
 }
 
-/// The data views of a [`Mesh`]: the fields `Field::View` of a problem name them.
+/// The data views of a [`Mesh`](crate::mesh::Mesh): the fields `Field::View` of a problem name them.
 ///
 /// Refinements inherit them: the midpoint of an edge has the mean of its ends, where both have a value, and the children of a
 /// triangle have its value.
@@ -97,25 +96,22 @@ pub enum ViewError {
     },
 }
 
-impl Mesh {
-    /// The same mesh with a further data view, one value for each vertex or triangle. Linear time.
-    ///
-    /// # Errors
-    /// [`ViewError`] when another view is called like it, and for values that are not finite or not as many.
-    pub fn with_view(
-        mut self,
-        name: impl Into<String>,
+impl Views {
+    /// Adds a view with a value for each of `expected` vertices or triangles.
+    pub(in crate::mesh) fn add(
+        &mut self,
+        name: String,
         place: ViewPlace,
         values: impl IntoIterator<Item = f64>,
-    ) -> Result<Self, ViewError> {
-        let name = name.into();
-        if self.views.views.contains_key(&name) {
+        expected: usize,
+    ) -> Result<(), ViewError> {
+        if self.views.contains_key(&name) {
             return Err(ViewError::Taken { name });
         }
         let values: Vec<(u32, f64)> = (0..).zip(values).collect();
-        let (expected, of) = match place {
-            ViewPlace::Vertices => (self.points.len(), "vertices"),
-            ViewPlace::Triangles => (self.triangles.len(), "triangles"),
+        let of = match place {
+            ViewPlace::Vertices => "vertices",
+            ViewPlace::Triangles => "triangles",
         };
         if values.len() != expected {
             return Err(ViewError::Length { name, found: values.len(), expected, of });
@@ -123,12 +119,10 @@ impl Mesh {
         if let Some(&(index, value)) = values.iter().find(|(_, value)| !value.is_finite()) {
             return Err(ViewError::NotFinite { name, index: index as usize, value });
         }
-        self.views.views.insert(name, Ok(Arc::new(View { place, values })));
-        Ok(self)
+        self.views.insert(name, Ok(Arc::new(View { place, values })));
+        Ok(())
     }
-}
 
-impl Views {
     /// Those of a file, on the mesh that was made from it.
     pub(in crate::mesh) fn of_file(views: Vec<GmshView>) -> Self {
         let view = |GmshView { name, data }| {
@@ -192,7 +186,7 @@ fn on_children(view: &View, origins: impl Iterator<Item = usize>) -> Vec<(u32, f
 mod tests {
     use super::*;
     use crate::mesh::samples::irregular;
-    use crate::mesh::{Bisection, MeshFamily};
+    use crate::mesh::{Bisection, Mesh, MeshFamily};
 
     /// Coordinates of size one, halved a few times, are rounded.
     const ROUNDING: f64 = 1e-15;

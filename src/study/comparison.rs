@@ -1,7 +1,7 @@
 //! Solvers side by side on the same discrete problems.
 //!
 //! What is timed goes from a finished [`PairDiscretization`] to the finished certificate: [`ContactSolver::solve`] and
-//! [`certify`]. A result that does not certify is a row that says so, never a time to compare. Seconds depend on the
+//! [`certify_pair`]. A result that does not certify is a row that says so, never a time to compare. Seconds depend on the
 //! machine; *work units* hardly do: multiples of the time of one product `y = K x` ([`CsrProduct`]), measured in the same
 //! run just before and just after.
 

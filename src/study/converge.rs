@@ -8,7 +8,7 @@ use super::accuracy::{AccuracyError, Tolerance, solve_bounded};
 use super::prolongation::Fields;
 use crate::action::{PairSolution, Rejected, Rim};
 use crate::discretization::{Discretization, DiscretizationError, PairDiscretization};
-use crate::estimate::{ErrorBound, ErrorNorms, LoadWarning, MeasureError, NoBound, RimError};
+use crate::estimate::{DataWarning, ErrorBound, ErrorNorms, MeasureError, NoBound, RimError};
 use crate::mesh::{MeshError, MeshFamily};
 use crate::problem::{ContactProblem, ExactSolution, ProblemError};
 use crate::qp::TimeLimit;
@@ -25,7 +25,7 @@ pub struct ConvergenceStudy {
     level: usize,
     last: Option<Fields>,
     /// The vertices of the last mesh that was solved on, and the loads of which its bound may know too little.
-    warnings: Option<(usize, Vec<LoadWarning>)>,
+    warnings: Option<(usize, Vec<DataWarning>)>,
 }
 
 /// A level of a study fails.
@@ -149,7 +149,7 @@ impl ConvergenceStudy {
     ///
     /// # Errors
     /// [`StudyError`] when there is no such mesh.
-    pub fn into_warnings(mut self, level: &LevelErrors) -> Result<Vec<LoadWarning>, StudyError> {
+    pub fn into_warnings(mut self, level: &LevelErrors) -> Result<Vec<DataWarning>, StudyError> {
         if let Some((_, warnings)) = self.warnings.take_if(|(vertices, _)| *vertices == level.vertices) {
             return Ok(warnings);
         }
@@ -158,7 +158,7 @@ impl ConvergenceStudy {
         }
         let d = PairDiscretization::new(&self.problem, self.family.mesh().clone())
             .map_err(DiscretizationError::from)?;
-        Ok(level.bound.map_or_else(Vec::new, |bound| LoadWarning::all(&d, bound)))
+        Ok(level.bound.map_or_else(Vec::new, |bound| DataWarning::all(&d, bound)))
     }
 
     /// Refines (but for the first level), solves from the last level's solution, certifies, and hands the solution to

@@ -8,7 +8,7 @@ use super::converge::StudyError;
 use super::prolongation::Fields;
 use crate::action::ContactSolution;
 use crate::discretization::{Discretization, DiscretizationError, StackDiscretization};
-use crate::estimate::{RimError, StackNorms};
+use crate::estimate::{DataWarning, RimError, StackNorms};
 use crate::mesh::MeshFamily;
 use crate::problem::{ContactProblem, ExactStack};
 use crate::qp::TimeLimit;
@@ -23,6 +23,7 @@ pub struct StackStudy {
     options: SolverOptions,
     level: usize,
     last: Option<Fields>,
+    warnings: Vec<DataWarning>,
 }
 
 impl StackStudy {
@@ -37,7 +38,7 @@ impl StackStudy {
         options: SolverOptions,
     ) -> Result<Self, StudyError> {
         let problem = exact.problem()?;
-        Ok(Self { exact, problem, family, solver, options, level: 0, last: None })
+        Ok(Self { exact, problem, family, solver, options, level: 0, last: None, warnings: Vec::new() })
     }
 
     /// Limits the time of each solve from now on, seconds.
@@ -61,6 +62,7 @@ impl StackStudy {
         let solved = solve_bounded(&self.problem, None, &d, &mut *self.solver, &options, tolerance);
         let Bounded { solution, bound, .. } = solved.map_err(|error| StudyError::at(level, error))?;
         self.last = Some(Fields::from(&solution));
+        self.warnings = bound.as_ref().map_or_else(|_| Vec::new(), |bound| bound.warnings.clone());
         let solve_seconds = start.elapsed().as_secs_f64();
         let start = Instant::now();
         let (Discretization::Stack(d), ContactSolution::Stack(solution)) = (&d, &solution) else {
@@ -82,7 +84,7 @@ impl StackStudy {
             h1: norm(&norms.h1),
             l2: norm(&norms.l2),
             energy: norms.energy,
-            bound: bound.ok().map(|bound| bound.total),
+            bound: bound.as_ref().ok().map(|bound| bound.total),
             nodal: norms.nodal_max.iter().copied().fold(0.0, f64::max),
             lambda_l2: norm(&of_gaps().map(|gap| gap.lambda_l2).collect::<Vec<_>>()),
             lambda_dual: None,
@@ -95,6 +97,11 @@ impl StackStudy {
             rim_distance: distances.and_then(|distances| distances.into_iter().reduce(f64::max)),
             jaccard: rims.iter().map(|rim| rim.jaccard).reduce(f64::min),
         })
+    }
+
+    /// The data of which the mesh of the last level that was solved on may know too little for its bound to hold.
+    pub fn into_warnings(self) -> Vec<DataWarning> {
+        self.warnings
     }
 
     /// Goes on to the next mesh without solving: past a level whose errors are known.

@@ -1,7 +1,7 @@
 //! Loads between the points of the quadrature: the bound does not hold then, and a warning says so.
 
 use membrane_contact::discretization::Discretization;
-use membrane_contact::estimate::{ErrorBound, LoadWarning};
+use membrane_contact::estimate::{DataWarning, ErrorBound};
 use membrane_contact::mesh::{Pattern, rectangle};
 use membrane_contact::problem::{ContactProblem, Expression};
 use membrane_contact::solver::{ActiveSet, SolverOptions};
@@ -23,7 +23,7 @@ fn a_load_that_the_quadrature_misses_is_named() {
     let blind = "-1-1000000*exp(-((x-0.53)^2+(y-0.52)^2)/0.000001)";
     for (f1, f2, named) in [(blind, "0", 1), ("0", blind, 2)] {
         let bound = bound(f1, f2, 32);
-        let [LoadWarning::Unresolved { membrane, difference, bound: total }] = bound.warnings[..] else {
+        let [DataWarning::Unresolved { membrane, difference, bound: total }] = bound.warnings[..] else {
             panic!("{:?}", bound.warnings)
         };
         assert_eq!((membrane, total), (named, bound.total));
@@ -53,6 +53,6 @@ fn jumps_are_below_the_bound() {
 #[test]
 fn a_load_that_is_zero_at_all_points_is_told_from_none() {
     let vanishing = bound("-1", "if(x > 2, 1, 0)", 8);
-    assert_eq!(vanishing.warnings, [LoadWarning::Vanishing { membrane: 2 }]);
+    assert_eq!(vanishing.warnings, [DataWarning::Vanishing { membrane: 2 }]);
     assert_eq!(bound("-1", "1", 8).warnings, []);
 }

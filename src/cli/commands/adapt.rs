@@ -21,7 +21,7 @@ use crate::cli::run::progress::Progress;
 use crate::cli::run::setup::{Setup, check_solver, options, solver, too_early};
 use crate::cli::run::watch::Watch;
 use crate::cli::terminal::{note, print, wrapped};
-use crate::estimate::LoadWarning;
+use crate::estimate::DataWarning;
 use crate::mesh::{DualMesh, Mesh, MeshError, SubTriangulation};
 use crate::output::{Seconds, Summary, read_checkpoint, write_checkpoint};
 use crate::pictures::{MeshPicture, RatesPicture, Series, render_rates, render_triangulation};
@@ -45,7 +45,7 @@ const WRITING_PER_VERTEX: f64 = 4e-6;
 
 /// What the bound of the table is.
 const GUARANTEED: &str =
-    "bound: of the error in the energy norm, guaranteed up to the quadrature of the loads";
+    "bound: of the error in the energy norm, guaranteed up to the quadrature of the data";
 
 /// Why a run ends.
 enum Stop {
@@ -330,7 +330,7 @@ fn files(pictures: &Pictures) -> Vec<&'static str> {
 fn table(
     title: &str,
     levels: &[AdaptiveLevel],
-    warnings: &[LoadWarning],
+    warnings: &[DataWarning],
     (folder, files): (&Path, &[&str]),
     left_out: &[&str],
 ) -> String {

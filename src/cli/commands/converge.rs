@@ -16,7 +16,7 @@ use crate::cli::run::progress::Progress;
 use crate::cli::run::setup::{Setup, check_refinements, check_solver, options, solver, too_early};
 use crate::cli::run::watch::Watch;
 use crate::cli::terminal::{note, print, wrapped};
-use crate::estimate::LoadWarning;
+use crate::estimate::DataWarning;
 use crate::pictures::{RatesPicture, Series, render_rates};
 use crate::problem::Exact;
 use crate::qp::TimeLimit;
@@ -154,11 +154,11 @@ impl Study {
         }
     }
 
-    /// What the bound of the last level may not know; of a stack there is no bound.
-    fn into_warnings(self, level: &LevelErrors) -> Result<Vec<LoadWarning>, StudyError> {
+    /// What the bound of the last level may not know; of a stack, if that was solved in this run.
+    fn into_warnings(self, level: &LevelErrors) -> Result<Vec<DataWarning>, StudyError> {
         match self {
             Self::Pair(study) => study.into_warnings(level),
-            Self::Stack(_) => Ok(Vec::new()),
+            Self::Stack(study) => Ok(study.into_warnings()),
         }
     }
 }
@@ -264,7 +264,7 @@ fn typeset(name: &str) -> String {
 fn table(
     title: &str,
     levels: &[LevelErrors],
-    warnings: &[LoadWarning],
+    warnings: &[DataWarning],
     (folder, drawn): (&Path, &[&str]),
     left_out: &[&str],
 ) -> String {
@@ -317,7 +317,7 @@ fn rows(levels: &[LevelErrors], measures: &[Measure], index: bool) -> String {
 }
 
 /// The loads of which the bound on the finest mesh may know too little.
-fn warning_lines(levels: &[LevelErrors], warnings: &[LoadWarning]) -> String {
+fn warning_lines(levels: &[LevelErrors], warnings: &[DataWarning]) -> String {
     let vertices = grouped(levels.last().map_or(0, |last| last.vertices));
     let line = |warning| note(&format!("warning, at the finest level ({vertices} vertices): {warning}"));
     warnings.iter().map(line).collect()

@@ -75,6 +75,24 @@ impl StackDiscretization {
         self.membranes[i - 1].foundation_means.as_ref().map_or(0.0, |means| means[t])
     }
 
+    /// The edges along which the action in gap `k` may have a density of its own: those where one of the membranes is free or its
+    /// tension jumps from one region to another, and those where an obstacle is given by another region; the lower end first.
+    pub(crate) fn lines(&self, k: usize) -> Vec<[usize; 2]> {
+        let last = self.membranes.len() + 1;
+        let of_layer = |layer: usize| match layer {
+            0 => [self.obstacle_lines[0].as_slice(), &[]],
+            _ if layer == last => [self.obstacle_lines[1].as_slice(), &[]],
+            _ => {
+                let MembraneData { held, tension_borders, .. } = &self.membranes[layer - 1];
+                [held.free_edges.as_slice(), tension_borders]
+            }
+        };
+        let mut lines = [of_layer(k), of_layer(k + 1)].concat().concat();
+        lines.sort_unstable();
+        lines.dedup();
+        lines
+    }
+
     /// The length of an edge.
     pub(crate) fn edge_length(&self, [a, b]: [usize; 2]) -> f64 {
         distance_sq(self.mesh.points()[a], self.mesh.points()[b]).sqrt()

@@ -93,7 +93,8 @@ fn guarantee(summary: &Summary) -> String {
         Some(_) if summary.warnings.is_empty() => {
             "up to the quadrature of the data, on the polygon of the mesh"
         }
-        Some(_) => "if the loads are as the quadrature sees them",
+        Some(_) if summary.membranes.is_none() => "if the loads are as the quadrature sees them",
+        Some(_) => "if the data are as the mesh sees them",
     };
     text.into()
 }

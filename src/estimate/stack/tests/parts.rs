@@ -3,7 +3,7 @@
 use super::{bound, posed, solve};
 use crate::discretization::{IntegrationRule, StackDiscretization};
 use crate::estimate::stack::rest;
-use crate::estimate::{ErrorBound, NoBound};
+use crate::estimate::{DataWarning, ErrorBound, NoBound};
 use crate::mesh::samples::{irregular, square, square_without};
 use crate::mesh::{Mesh, Pattern, rectangle};
 use crate::problem::{ContactProblem, Field, Function, Membrane};
@@ -104,4 +104,18 @@ fn varying_line_loads_oscillate() {
     assert_eq!(oscillation(3.0.into()), 0.0);
     let slope = oscillation(Function::from_fn(|_, y| 10.0 * y));
     assert!(slope > 0.0 && (oscillation(Function::from_fn(|_, y| 20.0 * y)) / slope - 2.0).abs() < ROUNDING);
+}
+
+/// A height that is not affine between two vertices is named; one that is, or that is known at vertices only, is not.
+#[test]
+fn heights_that_bend_are_named() {
+    let warnings = |height: Field| {
+        let problem = ContactProblem::stack().membrane(Membrane::new(1.0).load(-1.0).height(height));
+        let d = posed(&problem.build().unwrap(), &square(4));
+        bound(&d, &solve(&d)).warnings
+    };
+    let bent = Function::from_fn(|x, y| x * x + y);
+    assert_eq!(warnings(bent.into()), [DataWarning::BentHeight { membrane: 1 }]);
+    assert_eq!(warnings(Function::from_fn(|x, y| 1.0 + 2.0 * x - y).into()), []);
+    assert_eq!(warnings(Field::PerVertex((0..25).map(f64::from).collect())), []);
 }

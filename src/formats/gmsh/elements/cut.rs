@@ -1,7 +1,7 @@
 //! Quadrangles are cut in two triangles.
 
-use super::super::error::GmshError;
 use super::{Cell, NO_NODE, number};
+use crate::formats::gmsh::error::GmshError;
 use crate::geometry::{distance_sq, twice_signed_area};
 
 /// Two diagonals are equally long when the squares of their lengths differ by less than so much of their sum. Meshes of equal
@@ -9,18 +9,18 @@ use crate::geometry::{distance_sq, twice_signed_area};
 const EQUALLY_LONG: f64 = 1e-8;
 
 /// Triangles, and where they come from.
-pub(in super::super) struct Cut {
+pub(crate) struct Cut {
     /// The vertices of every triangle, as indices of nodes.
-    pub(in super::super) triangles: Vec<[usize; 3]>,
+    pub(crate) triangles: Vec<[usize; 3]>,
     /// The tag of the element of which each is.
-    pub(in super::super) tags: Vec<u64>,
+    pub(crate) tags: Vec<u64>,
     /// The number of the first triangle of each cell, and that of all triangles; empty where all cells are triangles.
     firsts: Vec<u32>,
 }
 
 impl Cut {
     /// The triangles of a cell.
-    pub(in super::super) fn of_cell(&self, cell: u32) -> std::ops::Range<u32> {
+    pub(crate) fn of_cell(&self, cell: u32) -> std::ops::Range<u32> {
         if self.firsts.is_empty() {
             return cell..cell + 1;
         }
@@ -28,7 +28,7 @@ impl Cut {
     }
 
     /// Number of quadrangles that were cut.
-    pub(in super::super) fn quadrangles(&self) -> usize {
+    pub(crate) fn quadrangles(&self) -> usize {
         self.triangles.len() - self.firsts.len().checked_sub(1).unwrap_or(self.triangles.len())
     }
 }
@@ -37,7 +37,7 @@ impl Cut {
 ///
 /// # Errors
 /// [`GmshError::Quadrangle`] for a quadrangle that neither diagonal divides.
-pub(in super::super) fn cut(cells: &[Cell], tags: Vec<u64>, points: &[[f64; 2]]) -> Result<Cut, GmshError> {
+pub(crate) fn cut(cells: &[Cell], tags: Vec<u64>, points: &[[f64; 2]]) -> Result<Cut, GmshError> {
     let corners = |[a, b, c, d]: Cell| [a, b, c, d].map(|a| a as usize);
     let quadrangles = cells.iter().filter(|cell| cell[3] != NO_NODE).count();
     if quadrangles == 0 {

@@ -1,11 +1,11 @@
 //! The kinds of elements.
 
-use super::super::error::GmshError;
-use super::super::scanner::Scanner;
+use crate::formats::gmsh::error::GmshError;
+use crate::formats::gmsh::scanner::Scanner;
 
 /// What an element is, whatever its order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in super::super) enum Shape {
+pub(crate) enum Shape {
     Point,
     Line,
     Triangle,
@@ -14,7 +14,7 @@ pub(in super::super) enum Shape {
 
 impl Shape {
     /// Number of corners.
-    pub(in super::super) fn corners(self) -> usize {
+    pub(crate) fn corners(self) -> usize {
         match self {
             Self::Point => 1,
             Self::Line => 2,
@@ -24,7 +24,7 @@ impl Shape {
     }
 
     /// The dimension of an element.
-    pub(in super::super) fn dimension(self) -> u8 {
+    pub(crate) fn dimension(self) -> u8 {
         match self {
             Self::Point => 0,
             Self::Line => 1,
@@ -35,20 +35,20 @@ impl Shape {
 
 /// A kind of elements that may be in the file of a plane mesh.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in super::super) struct Kind {
-    pub(in super::super) shape: Shape,
+pub(crate) struct Kind {
+    pub(crate) shape: Shape,
     /// Number of nodes, of which the corners come first.
-    pub(in super::super) nodes: usize,
+    pub(crate) nodes: usize,
 }
 
 impl Kind {
     /// Number of nodes between the corners.
-    pub(in super::super) fn between(self) -> usize {
+    pub(crate) fn between(self) -> usize {
         self.nodes - self.shape.corners()
     }
 
     /// Reads the number that Gmsh gives to a kind of elements.
-    pub(in super::super) fn read(scanner: &mut Scanner) -> Result<Self, GmshError> {
+    pub(crate) fn read(scanner: &mut Scanner) -> Result<Self, GmshError> {
         let code = scanner.int("an element type")?;
         if let Some((shape, nodes)) = known(code) {
             return Ok(Self { shape, nodes });

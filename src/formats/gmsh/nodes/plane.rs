@@ -1,8 +1,8 @@
 //! From a plane in space to coordinates in it.
 
-use super::super::error::GmshError;
-use super::super::note::GmshNote;
 use super::Nodes;
+use crate::formats::gmsh::error::GmshError;
+use crate::formats::gmsh::note::GmshNote;
 
 /// Largest distance of a node from the plane of the mesh, relative to the largest side of the box around the mesh.
 ///
@@ -49,7 +49,7 @@ impl Nodes {
 ///
 /// # Errors
 /// [`GmshError::NotFlat`]: they lie in no plane, up to [`FLATNESS`].
-pub(in super::super) fn flatten<I: Iterator<Item = usize>>(
+pub(crate) fn flatten<I: Iterator<Item = usize>>(
     nodes: &mut Nodes,
     used: impl Fn() -> I,
 ) -> Result<Option<GmshNote>, GmshError> {
