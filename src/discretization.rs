@@ -21,6 +21,10 @@ use crate::problem::ContactProblem;
 
 /// A problem on a mesh: the paper's pair, which decouples exactly, or any other stack.
 #[derive(Debug, Clone)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "there is one, or a few, and it is next to nothing beside its vectors"
+)]
 pub enum Discretization {
     /// The paper's pair (3.4).
     Pair(PairDiscretization),

@@ -6,6 +6,7 @@ mod error;
 mod fields;
 mod membrane;
 mod obstacles;
+mod pressed;
 mod samples;
 mod scales;
 mod supports;
@@ -29,6 +30,7 @@ pub use fields::IntegrationRule;
 use fields::{POSITIVE, borders, means};
 use membrane::{MembraneData, connected_parts, profile};
 use obstacles::{check_order, obstacle};
+use pressed::{Rest, rests};
 pub(crate) use samples::{Samples, at_samples};
 
 /// Displacements over vertices, one for each membrane from the top.
@@ -69,6 +71,8 @@ pub struct StackDiscretization {
     /// Where the rows of gap `k` begin, and where the last ones end.
     row_start: Vec<usize>,
     unknowns: usize,
+    /// The rows in which membranes that nothing else holds are pressed together, before anybody knows more.
+    resting: Vec<usize>,
     dual_area: Vec<f64>,
     scales: Scales,
 }
@@ -127,7 +131,6 @@ impl StackDiscretization {
             let tension = means(mesh, &membrane.tension, &format!("tension mu{name}"), rule, POSITIVE)?;
             let (factor, profile) = profile(&mut profiles, &tension);
             let data = MembraneData::new(mesh, &around, membrane, name, rule, (factor, profile), unknowns)?;
-            data.check_support(mesh, &parts, name)?;
             unknowns += data.vertices.len();
             membranes.push(data);
             tensions.push(tension);
@@ -145,6 +148,9 @@ impl StackDiscretization {
         let scales = scales::scales(mesh, &membranes, &tensions, &obstacles, &dual_area);
         scales::check_range(&scales, &tensions)?;
         check_order(mesh, &membranes, &mut obstacles, scales.displacement)?;
+        let may_be_pressed: Vec<bool> = problem.membranes().iter().map(|membrane| membrane.pressed).collect();
+        let has_obstacles = [obstacles[0].is_some(), obstacles[1].is_some()];
+        let rests = rests(mesh, &membranes, &may_be_pressed, has_obstacles, &parts)?;
         let mut stack = Self {
             problem: problem.clone(),
             rule,
@@ -156,6 +162,7 @@ impl StackDiscretization {
             rows: Vec::new(),
             row_start: vec![0],
             unknowns,
+            resting: Vec::new(),
             dual_area,
             scales,
             mesh: shared,
@@ -164,6 +171,14 @@ impl StackDiscretization {
             let rows = (0..stack.dual_area.len()).filter_map(|a| stack.row_at(gap, a)).collect::<Vec<_>>();
             stack.rows.extend(rows);
             stack.row_start.push(stack.rows.len());
+        }
+        for Rest { part, gaps } in rests {
+            let in_part = |row: &usize| {
+                let GapRow { gap, vertex, .. } = stack.rows[*row];
+                gaps.contains(&gap) && parts[vertex] == part
+            };
+            let resting: Vec<usize> = (0..stack.rows.len()).filter(in_part).collect();
+            stack.resting.extend(resting);
         }
         Ok(stack)
     }
@@ -183,9 +198,21 @@ impl StackDiscretization {
         [0, 1].map(|k| self.obstacles[k].is_some())
     }
 
-    /// Whether it is one membrane with at most one obstacle.
+    /// Whether it is one membrane with at most one obstacle, which does not hold it up alone.
     pub fn is_obstacle_problem(&self) -> bool {
-        self.membranes() == 1 && self.has_obstacles() != [true; 2]
+        self.membranes() == 1 && self.has_obstacles() != [true; 2] && self.resting.is_empty()
+    }
+
+    /// A first guess of the rows that touch: those by which membranes are held that nothing else holds.
+    pub(crate) fn resting(&self) -> Vec<bool> {
+        let mut rests = vec![false; self.rows.len()];
+        self.resting.iter().for_each(|&row| rests[row] = true);
+        rests
+    }
+
+    /// Whether all membranes are held by heights and foundations.
+    pub(crate) fn is_held(&self) -> bool {
+        self.resting.is_empty()
     }
 
     /// The heights of ceiling and floor over vertices.

@@ -48,6 +48,9 @@ impl ErrorBound {
         if d.rule() != IntegrationRule::Quadrature {
             return Err(NoBound::VertexRule);
         }
+        if !d.is_held() {
+            return Err(NoBound::Pressed);
+        }
         if let Some(membrane) = (1..=d.membranes()).find(|&i| !d.has_even_foundation(i)) {
             return Err(NoBound::VaryingFoundation { membrane });
         }

@@ -19,6 +19,8 @@ pub struct Membrane {
     /// How it is held on each named curve, and on the rest of the boundary.
     pub(crate) parts: Vec<(String, Support)>,
     pub(crate) elsewhere: Support,
+    /// Whether its neighbours alone may hold it.
+    pub(crate) pressed: bool,
 }
 
 /// How a membrane is held on a part of the boundary.
@@ -44,6 +46,7 @@ impl Membrane {
             foundation: zero(),
             parts: Vec::new(),
             elsewhere: Support::Fixed(zero()),
+            pressed: false,
         }
     }
 
@@ -71,6 +74,13 @@ impl Membrane {
         self
     }
 
+    /// It may be held by its neighbours alone: by a membrane or an obstacle that its loads press it against. Without this, a membrane
+    /// that neither a height nor a foundation holds is refused.
+    pub fn pressed(mut self) -> Self {
+        self.pressed = true;
+        self
+    }
+
     /// The height on a named curve.
     pub fn height_on(self, curve: impl Into<String>, height: impl Into<Field>) -> Self {
         self.support_on(curve, Support::Fixed(height.into()))
@@ -92,6 +102,11 @@ impl Membrane {
         self.parts.retain(|(name, _)| *name != curve);
         self.parts.push((curve, support));
         self
+    }
+
+    /// Whether its neighbours alone may hold it.
+    pub fn is_pressed(&self) -> bool {
+        self.pressed
     }
 
     /// The names of the curves that it asks for.

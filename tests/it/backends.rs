@@ -180,7 +180,7 @@ fn osqp_needs_fewer_iterations_from_a_warm_start() {
     let d = PairDiscretization::new(&nearby, mesh.clone()).unwrap();
     let [cold, warm] = [None, Some(solution.into())].map(|warm_start| {
         let options = SolverOptions { warm_start, ..SolverOptions::default() };
-        QpSolver::new(Osqp).solve(&d, &options).expect("it runs").statistics.iterations
+        QpSolver::new(Osqp).solve_pair(&d, &options).expect("it runs").statistics.iterations
     });
     assert!(warm < cold, "{warm} iterations from a warm start, {cold} without");
 }

@@ -234,7 +234,7 @@ pub(crate) fn solver(name: SolverName) -> Box<dyn ContactSolver> {
 /// Multigrid does not solve every stack.
 pub(crate) fn check_solver(name: SolverName, problem: &ContactProblem) -> Result<(), SolverError> {
     let obstacles = [problem.ceiling(), problem.floor()].iter().flatten().count();
-    let is_obstacle_problem = problem.membranes().len() == 1 && obstacles < 2;
+    let is_obstacle_problem = matches!(problem.membranes(), [one] if !one.is_pressed()) && obstacles < 2;
     if name == SolverName::Multigrid && problem.as_pair().is_none() && !is_obstacle_problem {
         return Err(SolverError::Coupled);
     }

@@ -149,8 +149,16 @@ pub enum StackError {
         values: [f64; 2],
     },
     /// A membrane that nothing holds.
-    #[error("nothing holds membrane {membrane} on the part of the mesh at ({}, {}): fix it on a part of the boundary there, or give it a foundation", Number(point[0]), Number(point[1]))]
+    #[error("nothing holds membrane {membrane} on the part of the mesh at ({}, {}): fix it on a part of the boundary there, give it a foundation, or, if its neighbours hold it, say that it is pressed", Number(point[0]), Number(point[1]))]
     Unsupported {
+        /// Counted from 1 at the top.
+        membrane: usize,
+        /// A vertex of that part.
+        point: [f64; 2],
+    },
+    /// A membrane that is meant to be pressed against its neighbours, and is not.
+    #[error("membrane {membrane} is held by nothing on the part of the mesh at ({}, {}), and the forces there do not press it, and those that go with it, against a neighbour that is held: change the loads, or fix it", Number(point[0]), Number(point[1]))]
+    NotPressed {
         /// Counted from 1 at the top.
         membrane: usize,
         /// A vertex of that part.

@@ -76,17 +76,16 @@ impl MembraneData {
         })
     }
 
-    /// Every one of the connected `parts` of the mesh has a vertex where the membrane is fixed, or a foundation.
-    pub(super) fn check_support(&self, mesh: &Mesh, parts: &[usize], name: usize) -> Result<(), StackError> {
-        let holds =
-            |a: usize| self.held.height[a].is_some() || self.foundation.as_ref().is_some_and(|c| c[a] > 0.0);
+    /// Whether a height or a foundation holds it at a vertex.
+    pub(super) fn is_held_at(&self, a: usize) -> bool {
+        self.held.height[a].is_some() || self.foundation.as_ref().is_some_and(|c| c[a] > 0.0)
+    }
+
+    /// Whether one does on every one of the connected `parts` of the mesh.
+    pub(super) fn is_held_everywhere(&self, mesh: &Mesh, parts: &[usize]) -> bool {
         let mut is_held = vec![false; mesh.points().len()];
-        (0..parts.len()).filter(|&a| holds(a)).for_each(|a| is_held[parts[a]] = true);
-        let loose = (0..parts.len()).find(|&a| mesh.kind()[a] != VertexKind::Unused && !is_held[parts[a]]);
-        match loose {
-            Some(a) => Err(StackError::Unsupported { membrane: name, point: mesh.points()[a] }),
-            None => Ok(()),
-        }
+        (0..parts.len()).filter(|&a| self.is_held_at(a)).for_each(|a| is_held[parts[a]] = true);
+        (0..parts.len()).all(|a| mesh.kind()[a] == VertexKind::Unused || is_held[parts[a]])
     }
 }
 

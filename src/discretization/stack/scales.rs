@@ -99,7 +99,8 @@ fn range(values: impl Iterator<Item = f64> + Clone) -> f64 {
     if most > least { most - least } else { 0.0 }
 }
 
-/// The largest distance of a vertex, along edges, from those that are held; infinite where there are none.
+/// The largest distance of a vertex, along edges, from those that are held; the diameter of the domain where there are none, as for
+/// membranes that their neighbours alone hold.
 fn distance_to(mesh: &Mesh, is_fixed: impl Fn(usize) -> bool) -> f64 {
     /// Distances are not negative, so their bits are in their order.
     fn key(distance: f64) -> u64 {
@@ -134,8 +135,10 @@ fn distance_to(mesh: &Mesh, is_fixed: impl Fn(usize) -> bool) -> f64 {
             }
         }
     }
+    let (lower, upper) = mesh.bounding_box();
+    let diameter = distance_sq(lower, upper).sqrt();
     let used = (0..distance.len()).filter(|&a| mesh.kind()[a] != VertexKind::Unused);
-    used.map(|a| distance[a]).fold(0.0, f64::max)
+    used.map(|a| if distance[a].is_finite() { distance[a] } else { diameter }).fold(0.0, f64::max)
 }
 
 /// Energies must not overflow.

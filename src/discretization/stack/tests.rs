@@ -1,8 +1,9 @@
 //! What cannot be posed, and what data become on a mesh.
 
 use super::{GapRow, IntegrationRule, StackDiscretization, StackError};
+use crate::mesh::samples::square;
 use crate::mesh::{Mesh, Pattern, ViewPlace, rectangle};
-use crate::problem::{ContactProblem, Field, Function, Membrane};
+use crate::problem::{ContactProblem, Field, Function, Membrane, StackBuilder};
 
 /// Rounding of sums of a few dozen terms.
 const ROUNDING: f64 = 1e-13;
@@ -232,4 +233,41 @@ fn membranes_share_a_matrix_where_their_tensions_are_in_proportion() {
     assert_eq!(matrices([1.0.into(), 3.7.into()]), 1);
     assert_eq!(matrices([split(1.0, 2.0), split(4.0, 8.0)]), 1);
     assert_eq!(matrices([split(1.0, 2.0), split(4.0, 4.0)]), 2);
+}
+
+/// What nothing holds must be meant so, and pressed against something that is held.
+#[test]
+fn membranes_that_are_not_pressed_are_refused() {
+    let loose = |load: f64| Membrane::new(1.0).load(load).free().pressed();
+    let held = || Membrane::new(1.0);
+    let stack = |membranes: Vec<Membrane>, floor: Option<f64>| {
+        let stack = membranes.into_iter().fold(ContactProblem::stack(), StackBuilder::membrane);
+        let stack = floor.into_iter().fold(stack, StackBuilder::floor);
+        StackDiscretization::new(&stack.build().unwrap(), square(4)).map(|d| d.is_held())
+    };
+    let accepted = [
+        (vec![loose(-1.0), held()], None),
+        (vec![held(), loose(1.0)], None),
+        (vec![loose(-1.0)], Some(-1.0)),
+        (vec![loose(-3.0), loose(2.0), held()], None),
+        (vec![held(), loose(-1.0), held()], None),
+    ];
+    for (membranes, floor) in accepted {
+        assert_eq!(stack(membranes, floor), Ok(false));
+    }
+    assert_eq!(stack(vec![held(), held()], None), Ok(true));
+    let refused = [
+        // Nothing to rest on, pulled away, the lower one alone pulled up, without a force, between two without one.
+        (vec![loose(-1.0)], None),
+        (vec![loose(1.0), held()], None),
+        (vec![loose(2.0), loose(-3.0), held()], None),
+        (vec![loose(0.0), held()], None),
+        (vec![held(), loose(0.0), held()], None),
+    ];
+    for (membranes, floor) in refused {
+        assert!(matches!(stack(membranes, floor), Err(StackError::NotPressed { .. })));
+    }
+    let unmarked = Membrane::new(1.0).load(-1.0).free();
+    let error = stack(vec![unmarked, held()], None).unwrap_err();
+    assert!(error.to_string().contains("say that it is pressed"), "{error}");
 }

@@ -29,6 +29,9 @@ pub enum NoBound {
         /// From 1.
         membrane: usize,
     },
+    /// The norm of what the solver has left is not known where nothing but a neighbour holds a membrane.
+    #[error("a membrane is held by its neighbours alone: fix it somewhere, or give it a foundation")]
+    Pressed,
     /// A datum has no value inside a triangle.
     #[error(transparent)]
     Data(#[from] StackError),

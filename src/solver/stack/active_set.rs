@@ -13,7 +13,7 @@ use crate::solver::{Candidate, SolverError, SolverOptions, Statistics};
 /// boundary and where the first guess puts it.
 const MAX_STEPS: usize = 2000;
 
-/// From the gaps that a warm start closes, else from open ones, the contact set is repaired until it is consistent; in each step, all
+/// From the gaps that a warm start closes, else from open ones (closed where membranes are held by nothing else), the contact set is repaired until it is consistent; in each step, all
 /// that touches moves as one. `name` is that of the method.
 pub(in crate::solver) fn solve(
     d: &StackDiscretization,
@@ -24,7 +24,7 @@ pub(in crate::solver) fn solve(
     let start = Instant::now();
     let active = match &options.warm_start {
         Some(start) if start.fits_stack(d) => guess(d, &start.displacement, &start.multiplier),
-        _ => vec![false; d.rows().len()],
+        _ => d.resting(),
     };
     let found = settle(d, active, &options.limits(MAX_STEPS, start))?;
     Ok(Candidate {

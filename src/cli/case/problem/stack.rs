@@ -48,6 +48,9 @@ fn membrane(mut section: Section) -> Result<Membrane, Failure> {
         membrane = membrane.foundation(stiffness);
     }
     membrane = held(&mut section, membrane)?;
+    if section.flag("pressed")? == Some(true) {
+        membrane = membrane.pressed();
+    }
     section.finish()?;
     Ok(membrane)
 }

@@ -276,3 +276,43 @@ fn the_reference_values_are_reproduced() {
     let solution = solve_by(&mut Auto, &posed(&problem, &mesh));
     assert!((solution.energy() + 0.201_490_276_169).abs() > 1e-5, "{}", solution.energy());
 }
+
+/// A membrane that nothing holds but the one below it, which it is pressed against: the total action is its load, wherever it acts.
+#[test]
+fn membranes_that_are_only_pressed_are_held_by_their_neighbours() {
+    let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [12, 12], Pattern::Right).unwrap();
+    let loose = |load: f64| Membrane::new(1.0).load(load).free().pressed();
+    let held = Membrane::new(2.0).load(3.0);
+    let hat = Function::from_fn(|x, y| if x + y < 0.9 { -20.0 } else { 1.0 });
+    let cases = [
+        // From the top: on the lower one; two on it; hung under the upper one; on a floor; one in between, up and down.
+        (ContactProblem::stack().membrane(loose(-6.0)).membrane(held.clone()), vec![(1, 6.0)]),
+        (
+            ContactProblem::stack().membrane(loose(-6.0)).membrane(loose(2.0)).membrane(held.clone()),
+            vec![(1, 6.0), (2, 4.0)],
+        ),
+        (ContactProblem::stack().membrane(held.clone()).membrane(loose(5.0)), vec![(1, 5.0)]),
+        (
+            ContactProblem::stack().membrane(loose(-2.0)).floor(Function::from_fn(|x, _| 0.2 * x * x)),
+            vec![(1, 2.0)],
+        ),
+        (ContactProblem::stack().membrane(held.clone()).membrane(loose(-7.0)).floor(-0.3), vec![(2, 7.0)]),
+    ];
+    for (stack, totals) in cases {
+        let d = posed(&stack.build().unwrap(), &mesh);
+        for (name, mut solver) in solvers() {
+            let solution = solve_by(&mut *solver, &d);
+            for &(gap, total) in &totals {
+                let found = solution.gap(gap).unwrap().total_force;
+                assert!((found - total).abs() < 1e-8, "{name}: gap {gap} has {found}");
+            }
+        }
+    }
+    // Where the load is uneven, it rests on a part only.
+    let uneven = Membrane::new(1.0).load(hat).free().pressed();
+    let d = posed(&ContactProblem::stack().membrane(uneven).membrane(held).build().unwrap(), &mesh);
+    let solution = solve_by(&mut ActiveSet, &d);
+    let vertices = solution.gap(1).unwrap().contact_vertices();
+    assert!((1..100).contains(&vertices), "{vertices}");
+    assert!(solution.imbalance() < ROUNDING);
+}
