@@ -9,6 +9,9 @@ use crate::qp::Status;
 use crate::solver::Statistics;
 use crate::study::Checkpoint;
 
+/// The action in the only gap.
+const LAMBDA: &str = "lambda";
+
 /// The solver of which nothing is known.
 const UNKNOWN: &str = "unknown";
 
@@ -18,8 +21,8 @@ fn unknown() -> Statistics {
 }
 
 /// Writes a checkpoint. Arrays: `marked`, the marked triangles of all refinements one after the other, `marked_counts`, their
-/// numbers; `u1`, `u2`, ... and `lambda_1`, `lambda_2`, ..., the displacements from the top and the actions in the gaps, over the vertices of
-/// the last mesh; `tolerance`; `statistics`, the bytes of a JSON object.
+/// numbers; `u1`, `u2`, ..., the displacements from the top, and `lambda`, or `lambda_1`, `lambda_2`, ... in several gaps, the actions, over the
+/// vertices of the last mesh; `tolerance`; `statistics`, the bytes of a JSON object.
 ///
 /// # Errors
 /// When writing fails.
@@ -30,10 +33,12 @@ pub fn write_checkpoint(checkpoint: &Checkpoint, out: impl Write + Seek) -> io::
     let mut archive = NpzWriter::stored(out);
     archive.integers("marked_counts", &counts, &[counts.len()])?;
     archive.integers("marked", &marked, &[marked.len()])?;
-    for (kind, fields) in [("u", displacement), ("lambda_", actions)] {
-        for (number, values) in (1..).zip(fields) {
-            archive.floats(&format!("{kind}{number}"), values, &[values.len()])?;
-        }
+    for (number, values) in (1..).zip(displacement) {
+        archive.floats(&format!("u{number}"), values, &[values.len()])?;
+    }
+    for (number, values) in (1..).zip(actions) {
+        let name = if actions.len() == 1 { LAMBDA.into() } else { format!("{LAMBDA}_{number}") };
+        archive.floats(&name, values, &[values.len()])?;
     }
     archive.floats("tolerance", &[*tolerance], &[1])?;
     archive.bytes("statistics", &serde_json::to_vec(statistics)?)?;
@@ -65,7 +70,11 @@ pub fn read_checkpoint(input: impl Read + Seek) -> io::Result<Checkpoint> {
         let there = names.take_while(|name| archive.index_for_name(&format!("{name}.npy")).is_some());
         there.collect::<Vec<_>>().iter().map(|name| read_vector(&mut archive, name)).collect()
     };
-    let (displacement, actions) = (fields("u")?, fields("lambda_")?);
+    let displacement = fields("u")?;
+    let mut actions = fields(&format!("{LAMBDA}_"))?;
+    if actions.is_empty() && archive.index_for_name(&format!("{LAMBDA}.npy")).is_some() {
+        actions.push(read_vector(&mut archive, LAMBDA)?);
+    }
     let tolerance: Vec<f64> = read_vector(&mut archive, "tolerance")?;
     let &[tolerance] = tolerance.as_slice() else {
         return Err(io::Error::other("`tolerance` is not one number"));
@@ -108,6 +117,10 @@ mod tests {
         let bytes = written(&checkpoint());
         assert_eq!(read_checkpoint(Cursor::new(&bytes)).unwrap(), checkpoint());
         assert_eq!(written(&checkpoint()), bytes, "the same bytes each time");
+        let stack = Checkpoint { actions: vec![vec![1.0, 2.0], vec![0.0, 3.0]], ..checkpoint() };
+        assert_eq!(read_checkpoint(Cursor::new(written(&stack))).unwrap(), stack);
+        let unloaded = Checkpoint { actions: Vec::new(), ..checkpoint() };
+        assert_eq!(read_checkpoint(Cursor::new(written(&unloaded))).unwrap(), unloaded);
         let other = Checkpoint { tolerance: 1e-9, ..checkpoint() };
         assert_ne!(read_checkpoint(Cursor::new(written(&other))).unwrap(), checkpoint());
     }

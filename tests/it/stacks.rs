@@ -270,6 +270,11 @@ fn the_error_is_bounded_and_meshes_follow_it() {
     assert!(unknown["error_bound"].is_null());
     assert!(unknown["no_error_bound"].as_str().unwrap().contains("at vertices"), "{unknown}");
     let refused = run(folder.path(), "adapt case.toml --tolerance 0.1");
+    assert_eq!(refused.code, Some(2));
+    assert!(refused.stderr.contains("`integration` = \"vertices\""), "{}", refused.stderr);
+    let soft = floor("").replace("tension = 1", "tension = 1, foundation = \"x\"");
+    let folder = folder_with(&soft);
+    let refused = run(folder.path(), "adapt case.toml --tolerance 0.1");
     assert_eq!(refused.code, Some(1));
     assert!(refused.stderr.contains("there is no bound of the error"), "{}", refused.stderr);
 

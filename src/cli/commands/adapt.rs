@@ -21,6 +21,7 @@ use crate::cli::run::progress::Progress;
 use crate::cli::run::setup::{Setup, check_solver, options, solver, too_early};
 use crate::cli::run::watch::Watch;
 use crate::cli::terminal::{note, print, wrapped};
+use crate::discretization::IntegrationRule;
 use crate::estimate::DataWarning;
 use crate::mesh::{DualMesh, Mesh, MeshError, SubTriangulation};
 use crate::output::{Seconds, Summary, read_checkpoint, write_checkpoint};
@@ -45,7 +46,10 @@ const WRITING_PER_VERTEX: f64 = 4e-6;
 
 /// What the bound of the table is.
 const GUARANTEED: &str =
-    "bound: of the error in the energy norm, guaranteed up to the quadrature of the data";
+    "bound: of the error in the energy norm, guaranteed up to the quadrature of the loads";
+
+/// And of another stack than the pair.
+const OF_STACK: &str = "bound: of the error in the energy norm, guaranteed up to the quadrature of the data, on the polygon of the mesh";
 
 /// Why a run ends.
 enum Stop {
@@ -67,6 +71,14 @@ pub(crate) fn run(arguments: &AdaptArguments, watch: &Watch) -> Result<(), Failu
     }
     check_solver(setup.case.solver.name, &setup.case.problem)
         .map_err(|error| Failure::Input(format!("{}: {error}", setup.name)))?;
+    if setup.case.integration != IntegrationRule::Quadrature {
+        let problem =
+            "`integration` = \"vertices\" leaves the error without a bound that meshes could follow";
+        return Err(Failure::Input(format!(
+            "{}: {problem}: leave it out, or use `membranes solve`",
+            setup.name
+        )));
+    }
     setup.check_memory(setup.case.solver.name)?;
     check_first_mesh(&setup, arguments.max_vertices)?;
     // Nobody may find a folder of which the run says that nothing was written.
@@ -112,7 +124,9 @@ pub(crate) fn run(arguments: &AdaptArguments, watch: &Watch) -> Result<(), Failu
         let warnings = study.solution().map_or(&[][..], |(_, bound)| &bound.warnings);
         let mut files = files(&pictures);
         files.retain(|name| !left_out.contains(name));
-        let table = table(&setup.case.title, &levels, warnings, (folder.path(), &files), &left_out);
+        let guaranteed = if setup.case.pair().is_some() { GUARANTEED } else { OF_STACK };
+        let of_files = (folder.path(), files.as_slice());
+        let table = table(&setup.case.title, &levels, (guaranteed, warnings), of_files, &left_out);
         print(&(table + &setup.notes))?;
     }
     verdict(&setup.name, arguments, &stop, &levels)
@@ -296,18 +310,20 @@ fn write_history(
 ) -> Result<Vec<&'static str>, Failure> {
     let (title, levels) = (title.to_owned(), levels.to_vec());
     let draw = move || {
+        let bounds = values(&levels, |level| Some(level.bound));
+        let errors = values(&levels, |level| level.energy_error);
+        let estimates = values(&levels, |level| level.residual_estimator);
+        let mut series =
+            vec![Series { name: "bound", values: &bounds }, Series { name: "true error", values: &errors }];
+        // There is one for pairs only.
+        if estimates.iter().any(|value| value.is_finite()) {
+            series.push(Series { name: "residual estimator", values: &estimates });
+        }
         let picture = render_rates(&RatesPicture {
             title: &title,
             abscissa: "vertices",
             h: &levels.iter().map(|level| level.vertices as f64).collect::<Vec<_>>(),
-            series: &[
-                Series { name: "bound", values: &values(&levels, |level| Some(level.bound)) },
-                Series { name: "true error", values: &values(&levels, |level| level.energy_error) },
-                Series {
-                    name: "residual estimator",
-                    values: &values(&levels, |level| level.residual_estimator),
-                },
-            ],
+            series: &series,
             slopes: &OPTIMAL,
         });
         picture.map_err(|error| error.to_string())
@@ -330,7 +346,7 @@ fn files(pictures: &Pictures) -> Vec<&'static str> {
 fn table(
     title: &str,
     levels: &[AdaptiveLevel],
-    warnings: &[DataWarning],
+    (guaranteed, warnings): (&str, &[DataWarning]),
     (folder, files): (&Path, &[&str]),
     left_out: &[&str],
 ) -> String {
@@ -353,7 +369,7 @@ fn table(
     if let Some(slope) = exponent(later.iter().map(|level| [level.vertices as f64, level.bound])) {
         text += &note(&format!("the bound falls like vertices^{slope:.2} (later half; -0.50 is the best)"));
     }
-    text += &note(GUARANTEED);
+    text += &note(guaranteed);
     warnings.iter().for_each(|warning| text += &note(&format!("warning: {warning}")));
     if !left_out.is_empty() {
         text += &note(&format!("left out: {}", left_out_line(left_out)));
