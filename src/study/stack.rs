@@ -23,7 +23,8 @@ pub struct StackStudy {
     options: SolverOptions,
     level: usize,
     last: Option<Fields>,
-    warnings: Vec<DataWarning>,
+    /// The vertices of the last mesh that was solved on, and the data of which its bound may know too little.
+    warnings: Option<(usize, Vec<DataWarning>)>,
 }
 
 impl StackStudy {
@@ -38,7 +39,7 @@ impl StackStudy {
         options: SolverOptions,
     ) -> Result<Self, StudyError> {
         let problem = exact.problem()?;
-        Ok(Self { exact, problem, family, solver, options, level: 0, last: None, warnings: Vec::new() })
+        Ok(Self { exact, problem, family, solver, options, level: 0, last: None, warnings: None })
     }
 
     /// Limits the time of each solve from now on, seconds.
@@ -62,7 +63,8 @@ impl StackStudy {
         let solved = solve_bounded(&self.problem, None, &d, &mut *self.solver, &options, tolerance);
         let Bounded { solution, bound, .. } = solved.map_err(|error| StudyError::at(level, error))?;
         self.last = Some(Fields::from(&solution));
-        self.warnings = bound.as_ref().map_or_else(|_| Vec::new(), |bound| bound.warnings.clone());
+        let vertices = d.mesh().points().len();
+        self.warnings = bound.as_ref().ok().map(|bound| (vertices, bound.warnings.clone()));
         let solve_seconds = start.elapsed().as_secs_f64();
         let start = Instant::now();
         let (Discretization::Stack(d), ContactSolution::Stack(solution)) = (&d, &solution) else {
@@ -99,9 +101,21 @@ impl StackStudy {
         })
     }
 
-    /// The data of which the mesh of the last level that was solved on may know too little for its bound to hold.
-    pub fn into_warnings(self) -> Vec<DataWarning> {
-        self.warnings
+    /// The data of which the mesh of `level` may know too little for its bound to hold, where that is the last level or one that an
+    /// earlier study has measured: then the problem is assembled there, and not solved.
+    ///
+    /// # Errors
+    /// [`StudyError`] when there is no such mesh.
+    pub fn into_warnings(mut self, level: &LevelErrors) -> Result<Vec<DataWarning>, StudyError> {
+        let Some(bound) = level.bound else { return Ok(Vec::new()) };
+        if let Some((_, warnings)) = self.warnings.take_if(|(vertices, _)| *vertices == level.vertices) {
+            return Ok(warnings);
+        }
+        while self.family.mesh().points().len() < level.vertices {
+            self.family.refine()?;
+        }
+        let d = StackDiscretization::new(&self.problem, self.family.mesh().clone());
+        Ok(DataWarning::of_stack(&d.map_err(DiscretizationError::from)?, bound))
     }
 
     /// Goes on to the next mesh without solving: past a level whose errors are known.

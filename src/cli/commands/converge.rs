@@ -154,11 +154,11 @@ impl Study {
         }
     }
 
-    /// What the bound of the last level may not know; of a stack, if that was solved in this run.
+    /// What the bound of the last level may not know.
     fn into_warnings(self, level: &LevelErrors) -> Result<Vec<DataWarning>, StudyError> {
         match self {
             Self::Pair(study) => study.into_warnings(level),
-            Self::Stack(study) => Ok(study.into_warnings()),
+            Self::Stack(study) => study.into_warnings(level),
         }
     }
 }
