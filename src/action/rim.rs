@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::fem::gradient;
 use crate::geometry::twice_signed_area;
-use crate::mesh::{HalfEdges, Mesh};
+use crate::mesh::Mesh;
 
 type Point = [f64; 2];
 
@@ -131,9 +131,10 @@ fn rotated(touching: &[bool], mesh: &Mesh, t: usize) -> ([usize; 3], [Point; 3])
 /// The vertices in contact, with those held ones at which it reaches the boundary.
 fn closure(mesh: &Mesh, gap: &[f64], contact: &[bool]) -> Vec<bool> {
     let mut touching = contact.to_vec();
-    for (lower, upper, _) in HalfEdges::new(mesh.points().len(), mesh.triangles()).edges() {
-        for [a, b] in [[lower, upper], [upper, lower]] {
-            touching[a] |= gap[a] == 0.0 && contact[b];
+    for corners in mesh.triangles() {
+        // Along one of its three edges, the ends are two of the corners.
+        if corners.iter().any(|&b| contact[b]) {
+            corners.iter().for_each(|&a| touching[a] |= gap[a] == 0.0);
         }
     }
     // A corner of the domain may have no neighbour inside.
