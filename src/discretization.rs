@@ -4,6 +4,7 @@ mod areas;
 mod pair;
 mod scales;
 mod stack;
+mod structure;
 
 use std::sync::Arc;
 
@@ -15,6 +16,7 @@ pub use pair::{Displacement, PairDiscretization, PairError};
 pub use scales::Scales;
 pub use stack::{Displacements, GapRow, IntegrationRule, StackDiscretization, StackError};
 pub(crate) use stack::{Samples, Segment, at_samples};
+pub use structure::Structure;
 
 use crate::mesh::Mesh;
 use crate::problem::ContactProblem;
@@ -30,18 +32,6 @@ pub enum Discretization {
     Pair(PairDiscretization),
     /// Any other stack.
     Stack(StackDiscretization),
-}
-
-/// What solvers can make use of.
-#[derive(Debug, Clone, Copy)]
-#[non_exhaustive]
-pub enum Structure<'d> {
-    /// The paper's pair: a linear problem for a mean of the membranes, and an obstacle problem for the gap.
-    Pair(&'d PairDiscretization),
-    /// One membrane with at most one obstacle: the obstacle problem.
-    Obstacle(&'d StackDiscretization),
-    /// Membranes and obstacles that know of each other.
-    Coupled(&'d StackDiscretization),
 }
 
 /// A problem cannot be posed on a mesh.
@@ -96,8 +86,7 @@ impl Discretization {
     pub fn structure(&self) -> Structure<'_> {
         match self {
             Self::Pair(pair) => Structure::Pair(pair),
-            Self::Stack(stack) if stack.is_obstacle_problem() => Structure::Obstacle(stack),
-            Self::Stack(stack) => Structure::Coupled(stack),
+            Self::Stack(stack) => stack.into(),
         }
     }
 

@@ -17,5 +17,5 @@ pub use stiffness::stiffness;
 
 pub(crate) use cut::CutRule;
 pub(crate) use element::{gradient, local_stiffness};
-pub(crate) use moments::{ElementMoments, LoadMoments, SeenLoad, moments_on};
+pub(crate) use moments::{LoadMoments, SeenLoad, moments_on};
 pub(crate) use stiffness::{stiffness_around, weighted_stiffness};

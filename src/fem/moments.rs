@@ -130,6 +130,14 @@ impl ElementMoments {
         Self { deviation: (area * own.rest(area, samples).square).sqrt(), ..own }
     }
 
+    /// `||f - f_a||_K` or more, where `f_a` on the wedge of each corner is its share `(3 / |K|) int_K f phi_a`: that is
+    /// `||f - p||_K` and `||p - f_a||_K = (5/3 sum_a |K|/3 (f_a - f_K)^2)^(1/2)`.
+    pub(crate) fn oscillation(&self, area: f64) -> f64 {
+        let mean = self.integrals.iter().sum::<f64>() / area;
+        let shares_sq: f64 = self.integrals.iter().map(|f| (3.0 * f / area - mean).powi(2)).sum();
+        self.deviation + (5.0 / 9.0 * area * shares_sq).sqrt()
+    }
+
     /// The values of `p` at the corners: `int_K p phi_i = |K| / 12 (3 mean + p_i)`.
     fn affine(&self, area: f64) -> [f64; 3] {
         let mean = self.integrals.iter().sum::<f64>() / area;

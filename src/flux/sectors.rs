@@ -8,7 +8,8 @@ use std::collections::HashMap;
 
 use super::fan::{Walk, wedge_of};
 use super::field::{constant_outward, through};
-use crate::fem::gradient;
+use super::reconstruct::flux_on;
+use super::wedges::{Change, Products};
 use crate::mesh::{Mesh, VertexTriangles};
 use crate::parallel::prelude::*;
 use crate::parallel::{BLOCK, blocks};
@@ -48,14 +49,6 @@ pub(crate) struct MembraneFlux<'a> {
     pub(crate) rest: Vec<f64>,
 }
 
-/// `sigma + mu grad u_h` on a wedge, as fluxes: what enters through the half edge that comes first counterclockwise around the
-/// vertex, and the source. What enters and what the source adds leaves through the other half edge.
-#[derive(Debug, Clone, Copy, Default)]
-struct Change {
-    entering: f64,
-    source: f64,
-}
-
 /// A wedge of a sector.
 struct Wedge {
     /// Its place among the triangles around the vertex.
@@ -67,9 +60,7 @@ struct Wedge {
     spokes: [[f64; 2]; 2],
     /// The forces on the halves of these edges.
     edge_force: [f64; 2],
-    /// The products over the wedge of the circulation with itself, and with a source of 1 that is spread evenly.
-    circulation_sq: f64,
-    with_source: f64,
+    products: Products,
 }
 
 /// Where a sector ends.
@@ -94,10 +85,7 @@ impl<'a, S: Fn(usize, usize) -> f64 + Sync> Balanced<'a, '_, S> {
     /// [`MeetInAVertex`].
     pub(crate) fn flux(self) -> Result<MembraneFlux<'a>, MeetInAVertex> {
         let Self { mesh, around, tension, displacement, .. } = self;
-        let discrete = |k: usize| {
-            gradient(mesh.corners(k), mesh.triangles()[k].map(|a| displacement[a]))
-                .map(|slope| -tension[k] * slope)
-        };
+        let discrete = |k: usize| flux_on(mesh, k, tension[k], displacement);
         let discrete: Vec<_> =
             (0..mesh.triangles().len()).into_par_iter().with_min_len(BLOCK).map(discrete).collect();
         let mut changes = vec![Change::default(); 3 * mesh.triangles().len()];
@@ -199,18 +187,15 @@ impl<'a, S: Fn(usize, usize) -> f64 + Sync> Balanced<'a, '_, S> {
             let of_edge = self.edge_force.get(&[a.min(b), a.max(b)]);
             of_edge.map_or(0.0, |force| force[usize::from(a > b)])
         };
-        let (p_a, q_a) = ([p[0] - origin[0], p[1] - origin[1]], [q[0] - origin[0], q[1] - origin[1]]);
-        let dot = |u: [f64; 2], v: [f64; 2]| u[0] * v[0] + u[1] * v[1];
-        let (pp, pq, qq) = (dot(p_a, p_a), dot(p_a, q_a), dot(q_a, q_a));
+        let spoke = |end: [f64; 2]| [0, 1].map(|axis| -0.5 * (end[axis] - origin[axis]));
         Wedge {
             place,
             area: area / 3.0,
             force: (self.wedge_force)(k, corner),
             flux: discrete[k],
-            spokes: [p_a, q_a].map(|edge| edge.map(|side| -0.5 * side)),
+            spokes: [p, q].map(spoke),
             edge_force: if self.edge_force.is_empty() { [0.0; 2] } else { [next, last].map(edge_force) },
-            circulation_sq: (5.0 * pp - 8.0 * pq + 5.0 * qq) / (24.0 * area),
-            with_source: (4.0 * pp - 4.0 * pq + qq) / (24.0 * area),
+            products: Products::new([origin, p, q], area),
         }
     }
 }
@@ -255,8 +240,8 @@ fn balance(wedges: &[Wedge], [first, last]: [End; 2], given: Option<f64>, row: &
     for (k, wedge) in wedges.iter().enumerate() {
         let source = wedge.force + action * wedge.area;
         row[wedge.place] = Change { entering: flux, source };
-        with_circulation += flux * wedge.circulation_sq + source * wedge.with_source;
-        circulation_sq += wedge.circulation_sq;
+        with_circulation += flux * wedge.products.cc + source * wedge.products.cs;
+        circulation_sq += wedge.products.cc;
         flux += source + if k < crossings { crossing(k) } else { 0.0 };
     }
     let circulation = match [first, last] {

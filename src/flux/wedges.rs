@@ -41,23 +41,23 @@ struct Element {
 /// `t_ih + mu_i grad u_ih` on a wedge, as fluxes: what enters through the half edge that comes first counterclockwise
 /// around the vertex, and the source. What enters and what the source adds leaves through the other half edge.
 #[derive(Debug, Clone, Copy, Default)]
-struct Change {
-    entering: f64,
-    source: f64,
+pub(super) struct Change {
+    pub(super) entering: f64,
+    pub(super) source: f64,
 }
 
 /// The products over a wedge of two fields: `c` circulates with the flux 1, `s` has the source 1, spread evenly, and
 /// nothing enters it.
 #[derive(Debug, Clone, Copy, Default)]
-struct Products {
-    cc: f64,
-    cs: f64,
+pub(super) struct Products {
+    pub(super) cc: f64,
+    pub(super) cs: f64,
     ss: f64,
 }
 
 impl Products {
     /// Over `D_a cap K`, `K` with the corners `a, b, c` counterclockwise.
-    fn new([a, b, c]: [[f64; 2]; 3], area: f64) -> Self {
+    pub(super) fn new([a, b, c]: [[f64; 2]; 3], area: f64) -> Self {
         let (p, q) = ([b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]);
         let dot = |u: [f64; 2], v: [f64; 2]| u[0] * v[0] + u[1] * v[1];
         let (pp, pq, qq) = (dot(p, p), dot(p, q), dot(q, q));

@@ -2,11 +2,11 @@
 
 use web_time::Instant;
 
-use super::multigrid::{PreparedMultigrid, Problem};
+use super::multigrid::PreparedMultigrid;
 use super::{
     ActiveSet, Candidate, ContactSolver, Multigrid, PreparedSolver, SolverError, SolverOptions, Stalled,
 };
-use crate::discretization::{Discretization, PairDiscretization, StackDiscretization};
+use crate::discretization::{Discretization, PairDiscretization, StackDiscretization, Structure};
 use crate::qp::Status;
 use crate::text::grouped;
 
@@ -41,7 +41,7 @@ impl ContactSolver for Auto {
         d: &PairDiscretization,
         options: &SolverOptions,
     ) -> Result<Candidate, SolverError> {
-        PreparedAuto::new(Problem::Pair(d)).solve(options)
+        PreparedAuto::new(Structure::Pair(d)).solve(options)
     }
 
     fn solve_stack(
@@ -49,58 +49,57 @@ impl ContactSolver for Auto {
         d: &StackDiscretization,
         options: &SolverOptions,
     ) -> Result<Candidate, SolverError> {
-        PreparedAuto::new(Problem::Stack(d)).solve(options)
+        PreparedAuto::new(d.into()).solve(options)
     }
 
     fn prepare<'s>(&'s mut self, d: &'s Discretization) -> Box<dyn PreparedSolver + 's> {
-        Box::new(PreparedAuto::new(d.into()))
+        Box::new(PreparedAuto::new(d.structure()))
     }
 }
 
 /// The choice for one discretization. A multigrid that has stalled is not tried again.
 struct PreparedAuto<'d> {
-    problem: Problem<'d>,
+    structure: Structure<'d>,
     /// Or what has stalled.
     multigrid: Result<PreparedMultigrid<'d>, Vec<Stalled>>,
 }
 
 impl<'d> PreparedAuto<'d> {
-    fn new(problem: Problem<'d>) -> Self {
-        Self { problem, multigrid: Ok(PreparedMultigrid::new(problem)) }
+    fn new(structure: Structure<'d>) -> Self {
+        Self { structure, multigrid: Ok(PreparedMultigrid::new(structure)) }
     }
 }
 
 impl PreparedSolver for PreparedAuto<'_> {
     fn solve(&mut self, options: &SolverOptions) -> Result<Candidate, SolverError> {
-        let (refinements, unknowns) = match self.problem {
-            Problem::Pair(d) => (d.mesh().ancestry().len(), d.interior().len()),
-            Problem::Stack(d) => (d.mesh().ancestry().len(), d.unknowns()),
-        };
-        let (few, hierarchy) = small(refinements);
-        let by_active_set = |problem: Problem| problem.by_active_set(options);
-        let (mut candidate, reason) = match self.problem {
-            Problem::Stack(d) if !d.is_obstacle_problem() => {
-                let reason = format!("{} ({} unknowns)", structure(d), grouped(unknowns));
-                (by_active_set(self.problem)?, reason)
+        let (kind, unknowns) = match self.structure {
+            Structure::Coupled(d) => {
+                let reason = format!("{} ({} unknowns)", kind(d), grouped(d.unknowns()));
+                return Ok(chosen(by_active_set(self.structure, options)?, &reason));
             }
-            problem => {
-                let (candidate, size) = if unknowns <= few {
-                    (by_active_set(problem)?, "few")
-                } else {
-                    (self.multigrid_or_active_set(options)?, "many")
-                };
-                let stalled =
-                    if size == "many" && self.multigrid.is_err() { "; multigrid stalled" } else { "" };
-                let size = match problem {
-                    Problem::Pair(_) => format!("{size} unknowns ({} a membrane)", grouped(unknowns)),
-                    Problem::Stack(d) => format!("{}, {size} unknowns ({})", structure(d), grouped(unknowns)),
-                };
-                (candidate, format!("{size}, {hierarchy}{stalled}"))
-            }
+            Structure::Obstacle(d) => (Some(kind(d)), d.unknowns()),
+            Structure::Pair(d) => (None, d.interior().len()),
         };
-        candidate.statistics.choice = Some(format!("by auto: {reason}"));
-        Ok(candidate)
+        let (few, hierarchy) = small(self.structure.mesh().ancestry().len());
+        let (candidate, size) = if unknowns <= few {
+            (by_active_set(self.structure, options)?, "few")
+        } else {
+            (self.multigrid_or_active_set(options)?, "many")
+        };
+        let stalled = if size == "many" && self.multigrid.is_err() { "; multigrid stalled" } else { "" };
+        let unknowns = grouped(unknowns);
+        let size = match kind {
+            None => format!("{size} unknowns ({unknowns} a membrane)"),
+            Some(kind) => format!("{kind}, {size} unknowns ({unknowns})"),
+        };
+        Ok(chosen(candidate, &format!("{size}, {hierarchy}{stalled}")))
     }
+}
+
+/// The candidate with the reason for which its solver was chosen.
+fn chosen(mut candidate: Candidate, reason: &str) -> Candidate {
+    candidate.statistics.choice = Some(format!("by auto: {reason}"));
+    candidate
 }
 
 impl PreparedAuto<'_> {
@@ -109,7 +108,7 @@ impl PreparedAuto<'_> {
         let multigrid = match &mut self.multigrid {
             Ok(multigrid) => multigrid,
             Err(stalled) => {
-                let mut candidate = self.problem.by_active_set(options)?;
+                let mut candidate = by_active_set(self.structure, options)?;
                 candidate.statistics.stalled.clone_from(stalled);
                 return Ok(candidate);
             }
@@ -123,7 +122,7 @@ impl PreparedAuto<'_> {
         // Its levels go before the other method needs memory.
         self.multigrid = Err(Vec::new());
         let options = SolverOptions { time_limit: left.flatten(), ..options.clone() };
-        let mut candidate = self.problem.by_active_set(&options)?;
+        let mut candidate = by_active_set(self.structure, &options)?;
         let method = format!("{} on algebraic levels", Multigrid.name());
         candidate.statistics = candidate.statistics.after(method, stalled.statistics);
         self.multigrid = Err(candidate.statistics.stalled.clone());
@@ -131,17 +130,15 @@ impl PreparedAuto<'_> {
     }
 }
 
-impl Problem<'_> {
-    fn by_active_set(self, options: &SolverOptions) -> Result<Candidate, SolverError> {
-        match self {
-            Self::Pair(d) => ActiveSet.solve_pair(d, options),
-            Self::Stack(d) => ActiveSet.solve_stack(d, options),
-        }
+fn by_active_set(structure: Structure, options: &SolverOptions) -> Result<Candidate, SolverError> {
+    match structure {
+        Structure::Pair(d) => ActiveSet.solve_pair(d, options),
+        Structure::Obstacle(d) | Structure::Coupled(d) => ActiveSet.solve_stack(d, options),
     }
 }
 
 /// What kind of stack it is.
-fn structure(d: &StackDiscretization) -> String {
+fn kind(d: &StackDiscretization) -> String {
     let obstacles = match d.has_obstacles() {
         [false, false] => "",
         [true, false] => " under a ceiling",

@@ -6,7 +6,8 @@ mod tests;
 use web_time::Instant;
 
 use super::{Candidate, ContactSolver, PreparedSolver, SolverError, SolverOptions, Stalled, pair, stack};
-use crate::discretization::{Discretization, PairDiscretization, StackDiscretization};
+use crate::discretization::{Discretization, PairDiscretization, StackDiscretization, Structure};
+use crate::mesh::Mesh;
 use crate::multigrid::hierarchy::{Genealogy, Hierarchy};
 use crate::qp::Status;
 
@@ -32,7 +33,7 @@ impl ContactSolver for Multigrid {
         d: &PairDiscretization,
         options: &SolverOptions,
     ) -> Result<Candidate, SolverError> {
-        PreparedMultigrid::new(Problem::Pair(d)).solve(options)
+        PreparedMultigrid::new(Structure::Pair(d)).solve(options)
     }
 
     fn solve_stack(
@@ -40,79 +41,59 @@ impl ContactSolver for Multigrid {
         d: &StackDiscretization,
         options: &SolverOptions,
     ) -> Result<Candidate, SolverError> {
-        PreparedMultigrid::new(Problem::Stack(d)).solve(options)
+        PreparedMultigrid::new(d.into()).solve(options)
     }
 
     fn prepare<'s>(&'s mut self, d: &'s Discretization) -> Box<dyn PreparedSolver + 's> {
-        Box::new(PreparedMultigrid::new(d.into()))
+        Box::new(PreparedMultigrid::new(d.structure()))
     }
 }
 
-/// What it solves.
-#[derive(Clone, Copy)]
-pub(super) enum Problem<'d> {
-    Pair(&'d PairDiscretization),
-    Stack(&'d StackDiscretization),
-}
-
-impl<'d> From<&'d Discretization> for Problem<'d> {
-    fn from(d: &'d Discretization) -> Self {
-        match d {
-            Discretization::Pair(d) => Self::Pair(d),
-            Discretization::Stack(d) => Self::Stack(d),
+/// The levels of what it solves.
+fn levels(structure: Structure, genealogy: &Genealogy) -> Result<Hierarchy, SolverError> {
+    match structure {
+        Structure::Pair(d) => Ok(Hierarchy::of_pair(d, genealogy)),
+        Structure::Obstacle(d) => {
+            let is_free: Vec<bool> =
+                (0..d.mesh().points().len()).map(|a| d.unknown(1, a).is_some()).collect();
+            Ok(Hierarchy::over(&d.matrix(1), &is_free, genealogy))
         }
-    }
-}
-
-impl Problem<'_> {
-    fn levels(self, genealogy: fn(&crate::mesh::Mesh) -> Genealogy) -> Hierarchy {
-        match self {
-            Self::Pair(d) => Hierarchy::of_pair(d, &genealogy(d.mesh())),
-            Self::Stack(d) => {
-                let is_free: Vec<bool> =
-                    (0..d.mesh().points().len()).map(|a| d.unknown(1, a).is_some()).collect();
-                Hierarchy::over(&d.matrix(1), &is_free, &genealogy(d.mesh()))
-            }
-        }
-    }
-
-    fn solve_on(
-        self,
-        hierarchy: &Hierarchy,
-        options: &SolverOptions,
-        start: Instant,
-    ) -> Result<Candidate, SolverError> {
-        match self {
-            Self::Pair(d) => pair::multigrid::solve_on(hierarchy, d, NAME, options, start),
-            Self::Stack(d) => stack::multigrid::solve_on(hierarchy, d, NAME, options, start),
-        }
+        Structure::Coupled(_) => Err(SolverError::Coupled),
     }
 }
 
 /// Multigrid for one discretization, whose levels are made once.
 pub(super) struct PreparedMultigrid<'d> {
-    problem: Problem<'d>,
+    structure: Structure<'d>,
     hierarchy: Option<Hierarchy>,
     /// Levels that are not tried again: those of the refinements, once it has stalled on them.
     stalled: Vec<Stalled>,
 }
 
 impl<'d> PreparedMultigrid<'d> {
-    pub(super) fn new(problem: Problem<'d>) -> Self {
-        Self { problem, hierarchy: None, stalled: Vec::new() }
+    pub(super) fn new(structure: Structure<'d>) -> Self {
+        Self { structure, hierarchy: None, stalled: Vec::new() }
     }
 
     /// Solves on the levels that there are, else on those that are made by this genealogy; the time limit counts from `start`.
     fn attempt(
         &mut self,
-        genealogy: fn(&crate::mesh::Mesh) -> Genealogy,
+        genealogy: impl FnOnce(&Mesh) -> Genealogy,
         options: &SolverOptions,
         start: Instant,
     ) -> Result<Candidate, SolverError> {
         let begin = Instant::now();
-        let hierarchy = self.hierarchy.get_or_insert_with(|| self.problem.levels(genealogy));
+        let hierarchy = match &mut self.hierarchy {
+            Some(hierarchy) => hierarchy,
+            none => none.insert(levels(self.structure, &genealogy(self.structure.mesh()))?),
+        };
         let setup_seconds = begin.elapsed().as_secs_f64();
-        let mut candidate = self.problem.solve_on(hierarchy, options, start)?;
+        let mut candidate = match self.structure {
+            Structure::Pair(d) => pair::multigrid::solve_on(hierarchy, d, NAME, options, start),
+            Structure::Obstacle(d) | Structure::Coupled(d) => {
+                stack::multigrid::solve_on(hierarchy, d, NAME, options, start)
+            }
+        }?;
         candidate.statistics.setup_seconds = setup_seconds;
         candidate.statistics.solve_seconds = begin.elapsed().as_secs_f64() - setup_seconds;
         Ok(candidate)
@@ -122,11 +103,6 @@ impl<'d> PreparedMultigrid<'d> {
 impl PreparedSolver for PreparedMultigrid<'_> {
     fn solve(&mut self, options: &SolverOptions) -> Result<Candidate, SolverError> {
         options.check()?;
-        if let Problem::Stack(d) = self.problem
-            && !d.is_obstacle_problem()
-        {
-            return Err(SolverError::Coupled);
-        }
         let start = Instant::now();
         let mut candidate = self.attempt(Genealogy::of, options, start)?;
         candidate.statistics.stalled.clone_from(&self.stalled);
@@ -136,7 +112,7 @@ impl PreparedSolver for PreparedMultigrid<'_> {
         }
         // On stretched triangles coarser meshes are no good: their neighbours along the long sides are hardly coupled.
         self.hierarchy = None;
-        let unknown = |mesh: &crate::mesh::Mesh| Genealogy::unknown(mesh.points().len());
+        let unknown = |mesh: &Mesh| Genealogy::unknown(mesh.points().len());
         let mut on_algebraic_levels = self.attempt(unknown, options, start)?;
         let method = format!("{NAME} on levels of {refinements} refinements");
         on_algebraic_levels.statistics = on_algebraic_levels.statistics.after(method, candidate.statistics);

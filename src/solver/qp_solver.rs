@@ -1,11 +1,16 @@
 //! Any QP backend as a solver of the contact problem.
 
+mod polish;
+
+use polish::polish;
 use web_time::Instant;
 
-use super::{Candidate, ContactSolver, PolishReport, SolverError, SolverOptions, Statistics, pair, stack};
+use super::repair::Settled;
+use super::{Candidate, ContactSolver, SolverError, SolverOptions, Statistics, pair, stack};
 use crate::discretization::{PairDiscretization, StackDiscretization};
+use crate::multigrid::cholesky::NotFactored;
 use crate::qp::{
-    Answer, BackendError, QpBackend, QpOptions, QpProblem, QpSolution, Status, TimeLimit, contact_qp,
+    Answer, BackendError, Limits, QpBackend, QpOptions, QpProblem, QpSolution, Status, TimeLimit, contact_qp,
     stack_qp,
 };
 
@@ -66,7 +71,11 @@ impl ContactSolver for QpSolver {
             guess.map(|guess| (pair::unknowns(d, &guess.displacement), guess.multiplier.clone()));
         let (answer, statistics) = self.answer(&qp, options, warm_start, start)?;
         let candidate = Candidate::from_pair_answer(d, answer, statistics);
-        Ok(polished(candidate, options, start, |candidate| pair::polish(d, &qp, candidate, options, start)))
+        let unknowns = |u: &[Vec<f64>]| pair::unknowns(d, u);
+        Ok(polished(&qp, candidate, (options, start), unknowns, |candidate, limits| {
+            let touching = pair::active_set::guess(d, &candidate.displacement, &candidate.multiplier);
+            pair::active_set::settle(d, touching, limits)
+        }))
     }
 
     fn solve_stack(
@@ -81,19 +90,31 @@ impl ContactSolver for QpSolver {
         let warm_start = guess.map(|guess| (d.restrict(&guess.displacement), guess.multiplier.clone()));
         let (answer, statistics) = self.answer(&qp, options, warm_start, start)?;
         let candidate = Candidate::from_stack_answer(d, answer, statistics);
-        Ok(polished(candidate, options, start, |candidate| stack::polish(d, &qp, candidate, options, start)))
+        Ok(polished(
+            &qp,
+            candidate,
+            (options, start),
+            |u| d.restrict(u),
+            |candidate, limits| {
+                let touching = stack::active_set::guess(d, &candidate.displacement, &candidate.multiplier);
+                stack::active_set::settle(d, touching, limits)
+            },
+        ))
     }
 }
 
-/// The candidate after a polish, if that is asked for, and the seconds of the solve.
+/// The candidate after a polish, if that is asked for and there is time, and the seconds of the solve. The active set method settles
+/// the contact set that the candidate has, within limits.
 fn polished(
+    qp: &QpProblem,
     mut candidate: Candidate,
-    options: &SolverOptions,
-    start: Instant,
-    polish: impl FnOnce(&mut Candidate) -> Option<PolishReport>,
+    (options, start): (&SolverOptions, Instant),
+    unknowns: impl Fn(&[Vec<f64>]) -> Vec<f64>,
+    settle: impl FnOnce(&Candidate, &Limits) -> Result<Settled, NotFactored>,
 ) -> Candidate {
-    if options.polish {
-        candidate.statistics.polish = polish(&mut candidate);
+    if let Some(limits) = options.limits_of_polish(start).filter(|_| options.polish) {
+        let settled = settle(&candidate, &limits);
+        candidate.statistics.polish = polish(qp, &mut candidate, unknowns, settled);
     }
     candidate.statistics.solve_seconds = start.elapsed().as_secs_f64() - candidate.statistics.setup_seconds;
     candidate

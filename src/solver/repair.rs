@@ -3,6 +3,9 @@
 use std::collections::HashSet;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
+use crate::discretization::Displacements;
+use crate::qp::Status;
+
 /// A multiplier, or a gap times its diagonal entry, below zero by less than this fraction of the terms that cancel in its row
 /// is a zero, rounded. Measured in the row alone: at the tip of a mesh refined towards a point, gaps of any size are real.
 pub(super) const ROUNDING: f64 = 256.0 * f64::EPSILON;
@@ -41,6 +44,16 @@ impl Repair {
         let repaired = if self.single { &wrong[wrong.len() - 1..] } else { wrong };
         repaired.iter().for_each(|&i| active[i] = !active[i]);
     }
+}
+
+/// Displacements over vertices and multipliers over rows for the last contact set of the active set method.
+pub(super) struct Settled {
+    pub(super) displacement: Displacements,
+    pub(super) multiplier: Vec<f64>,
+    /// How often the contact set was repaired.
+    pub(super) repairs: usize,
+    /// Solved when the last contact set needed no repair.
+    pub(super) status: Status,
 }
 
 /// Tells contact sets apart; two that are taken for one cost single repairs, no more.

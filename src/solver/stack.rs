@@ -2,9 +2,6 @@
 
 pub(super) mod active_set;
 pub(super) mod multigrid;
-mod polish;
 mod reduced;
 #[cfg(test)]
 mod tests;
-
-pub(super) use polish::polish;

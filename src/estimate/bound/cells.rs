@@ -3,7 +3,7 @@
 use super::trace::Trace;
 use crate::discretization::{Displacement, PairDiscretization};
 use crate::estimate::MeasureError;
-use crate::fem::{ElementMoments, gradient};
+use crate::fem::gradient;
 use crate::flux::WedgeFluxes;
 use crate::geometry::poincare;
 use crate::parallel::BLOCK;
@@ -132,12 +132,7 @@ impl Cells<'_> {
     /// `(5/3 sum_a |K|/3 (f_a - f_K)^2)^(1/2)`.
     fn oscillation(&self, k: usize) -> [f64; 2] {
         let (diameter, area) = (self.d.mesh().diameter_sq(k).sqrt(), self.d.mesh().triangle_area(k));
-        [0, 1].map(|i: usize| {
-            let ElementMoments { integrals, deviation } = self.d.moments[i].on(self.d.mesh(), k);
-            let mean = integrals.iter().sum::<f64>() / area;
-            let shares_sq: f64 = integrals.iter().map(|f| (3.0 * f / area - mean).powi(2)).sum();
-            poincare(diameter) * (deviation + (5.0 / 9.0 * area * shares_sq).sqrt())
-        })
+        [0, 1].map(|i: usize| poincare(diameter) * self.d.moments[i].on(self.d.mesh(), k).oscillation(area))
     }
 
     /// `mu_i |c_i|_{H1(K)}^2` for the changes `c_1 = (mu2 / M) w^-` and `c_2 = -(mu1 / M) w^-` that make the gap non-negative.

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use super::actions::{Actions, GapAction};
 use super::error::NoBound;
 use crate::discretization::{Samples, StackDiscretization, at_samples};
-use crate::fem::{DEGREE_4, ElementMoments, gradient};
+use crate::fem::{DEGREE_4, gradient};
 use crate::flux::{Balanced, MeetInAVertex, MembraneFlux, constant_outward, inner_product, value};
 use crate::geometry::{poincare, twice_signed_area};
 use crate::mesh::VertexTriangles;
@@ -253,18 +253,14 @@ impl<'a> Cells<'a> {
         let root = layer.least_tension[k].sqrt();
         let by_diameter = poincare(cell.diameter) / root;
         let m = if c > 0.0 { by_diameter.min(1.0 / c.sqrt()) } else { by_diameter };
-        let ElementMoments { integrals, deviation } = self.d.moments(i).on(self.d.mesh(), k);
-        let mean = integrals.iter().sum::<f64>() / cell.area;
-        let shares_sq: f64 = integrals.iter().map(|f| (3.0 * f / cell.area - mean).powi(2)).sum();
         let lumped_sq: f64 = (0..3)
             .map(|a| {
                 let [b, c] = [1, 2].map(|j| u[(a + j) % 3] - u[a]);
                 LUMPED[0] * (b * b + c * c) + 2.0 * LUMPED[1] * b * c
             })
             .sum();
-        let residual = deviation
-            + (5.0 / 9.0 * cell.area * shares_sq).sqrt()
-            + c * (cell.area * lumped_sq.max(0.0)).sqrt();
+        let oscillation = self.d.moments(i).on(self.d.mesh(), k).oscillation(cell.area);
+        let residual = oscillation + c * (cell.area * lumped_sq.max(0.0)).sqrt();
         m * residual + layer.line_oscillation.get(&k).copied().unwrap_or(0.0) / root
     }
 }

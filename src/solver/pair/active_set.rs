@@ -8,12 +8,13 @@ mod tests;
 use web_time::Instant;
 
 use obstacle::Obstacle;
-pub(super) use obstacle::guess;
+pub(in crate::solver) use obstacle::guess;
 
 use super::decoupled::Decoupled;
-use crate::discretization::{Displacements, PairDiscretization};
+use crate::discretization::PairDiscretization;
 use crate::multigrid::cholesky::NotFactored;
-use crate::qp::{Limits, Status};
+use crate::qp::Limits;
+use crate::solver::repair::Settled;
 use crate::solver::{Candidate, SolverError, SolverOptions, Statistics};
 
 /// The limit of steps when none is given. A cold start needs about as many as there are layers of vertices between the
@@ -49,18 +50,8 @@ pub(in crate::solver) fn solve(
     })
 }
 
-/// Displacements over vertices and multipliers over unknowns for the last contact set.
-pub(super) struct Settled {
-    pub(super) displacement: Displacements,
-    pub(super) multiplier: Vec<f64>,
-    /// How often the contact set was repaired.
-    pub(super) repairs: usize,
-    /// Solved when the last contact set needed no repair.
-    pub(super) status: Status,
-}
-
 /// Solves for the contact set `active`, and repairs it until it is consistent.
-pub(super) fn settle(
+pub(in crate::solver) fn settle(
     d: &PairDiscretization,
     active: Vec<bool>,
     limits: &Limits,

@@ -6,7 +6,7 @@ use super::reduced::{self, Equilibrium};
 use crate::discretization::StackDiscretization;
 use crate::multigrid::cholesky::NotFactored;
 use crate::qp::{Limits, Status};
-use crate::solver::repair::{CAUTION, ROUNDING, Repair, SLIGHT};
+use crate::solver::repair::{CAUTION, ROUNDING, Repair, SLIGHT, Settled};
 use crate::solver::{Candidate, SolverError, SolverOptions, Statistics};
 
 /// The limit of steps when none is given: a cold start needs about as many as there are layers of vertices between the free
@@ -28,8 +28,8 @@ pub(in crate::solver) fn solve(
     };
     let found = settle(d, active, &options.limits(MAX_STEPS, start))?;
     Ok(Candidate {
-        displacement: found.equilibrium.displacement,
-        multiplier: found.equilibrium.multiplier,
+        displacement: found.displacement,
+        multiplier: found.multiplier,
         statistics: Statistics {
             iterations: found.repairs + 1,
             solve_seconds: start.elapsed().as_secs_f64(),
@@ -38,17 +38,9 @@ pub(in crate::solver) fn solve(
     })
 }
 
-/// The equilibrium of the last contact set.
-pub(super) struct Settled {
-    pub(super) equilibrium: Equilibrium,
-    pub(super) repairs: usize,
-    /// Solved when the last contact set needed no repair.
-    pub(super) status: Status,
-}
-
 /// Solves for the contact set `active`, over rows, and repairs it until it is consistent; gaps that are slightly closed too far
 /// are repaired last.
-pub(super) fn settle(
+pub(in crate::solver) fn settle(
     d: &StackDiscretization,
     mut active: Vec<bool>,
     limits: &Limits,
@@ -69,7 +61,8 @@ pub(super) fn settle(
         if let Some(status) = status {
             // What is left below zero is rounding.
             equilibrium.multiplier.iter_mut().for_each(|y| *y = y.max(0.0));
-            return Ok(Settled { equilibrium, repairs, status });
+            let Equilibrium { displacement, multiplier, .. } = equilibrium;
+            return Ok(Settled { displacement, multiplier, repairs, status });
         }
         repair.apply(&mut active, &wrong);
         repairs += 1;
@@ -98,7 +91,7 @@ fn wrong(d: &StackDiscretization, active: &[bool], found: &Equilibrium, overlook
 }
 
 /// The rows that touch, as displacements and multipliers have it.
-pub(super) fn guess(d: &StackDiscretization, u: &[Vec<f64>], multiplier: &[f64]) -> Vec<bool> {
+pub(in crate::solver) fn guess(d: &StackDiscretization, u: &[Vec<f64>], multiplier: &[f64]) -> Vec<bool> {
     let scales = d.scales();
     let touches = |(row, y): (&crate::discretization::GapRow, &f64)| {
         let action = y / (d.dual_area()[row.vertex] * scales.force_density);

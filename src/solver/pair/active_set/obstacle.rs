@@ -125,11 +125,7 @@ impl<'k> Obstacle<'k> {
 }
 
 /// The vertices that touch, as displacements and multipliers have it.
-pub(in crate::solver::pair) fn guess(
-    d: &PairDiscretization,
-    u: &[Vec<f64>],
-    multiplier: &[f64],
-) -> Vec<bool> {
+pub(in crate::solver) fn guess(d: &PairDiscretization, u: &[Vec<f64>], multiplier: &[f64]) -> Vec<bool> {
     let scales = d.scales();
     let touches = |(&a, y): (&usize, &f64)| {
         let action = y / (d.dual_area()[a] * scales.force_density);

@@ -6,6 +6,7 @@ use crate::action::certify_pair;
 use crate::mesh::samples::irregular;
 use crate::mesh::{Bisection, Mesh, Pattern, l_shape, rectangle};
 use crate::problem::{Case, ContactProblem, Function};
+use crate::qp::Status;
 use crate::solver::repair::SLIGHT;
 use crate::solver::{ActiveSet, ContactSolver};
 
