@@ -11,6 +11,7 @@ use std::sync::Arc;
 use thiserror::Error;
 
 #[cfg(test)]
+#[cfg(test)]
 pub(crate) use pair::principal_submatrix;
 pub use pair::{Displacement, PairDiscretization, PairError};
 pub use scales::Scales;

@@ -13,9 +13,9 @@ mod stiffness;
 pub use load::{element_loads, load};
 pub use means::element_means;
 pub use quadrature::{DEGREE_4, TriangleRule};
-pub use stiffness::stiffness;
+pub use stiffness::{StiffnessMatrix, stiffness};
 
 pub(crate) use cut::CutRule;
-pub(crate) use element::{gradient, local_stiffness};
+pub(crate) use element::gradient;
 pub(crate) use moments::{LoadMoments, SeenLoad, moments_on};
-pub(crate) use stiffness::{stiffness_around, weighted_stiffness};
+pub(crate) use stiffness::{row_of, weighted_stiffness};

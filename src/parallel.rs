@@ -4,7 +4,7 @@ mod blocks;
 #[cfg(not(feature = "parallel"))]
 mod sequential;
 
-pub(crate) use blocks::{BLOCK, blocks, blocks_of, sums};
+pub(crate) use blocks::{BLOCK, blocks, blocks_of, concat, sums};
 
 #[cfg(feature = "parallel")]
 pub(crate) use rayon::{join, prelude, scope};

@@ -7,8 +7,8 @@ use thiserror::Error;
 
 use super::areas::dual_areas;
 use super::scales::{LARGEST, Scales};
-use crate::fem::{LoadMoments, stiffness_around};
-use crate::mesh::{Mesh, VertexKind, VertexTriangles};
+use crate::fem::{LoadMoments, StiffnessMatrix, row_of, stiffness};
+use crate::mesh::{Mesh, VertexKind};
 use crate::numeric::largest;
 use crate::parallel::BLOCK;
 use crate::parallel::prelude::*;
@@ -26,8 +26,7 @@ pub type Displacement = [Vec<f64>; 2];
 pub struct PairDiscretization {
     pub(crate) mesh: Arc<Mesh>,
     pub(crate) tension: [f64; 2],
-    pub(crate) stiffness: CsMat<f64>,
-    pub(crate) interior_stiffness: CsMat<f64>,
+    pub(crate) stiffness: StiffnessMatrix,
     pub(crate) load: [Vec<f64>; 2],
     pub(crate) moments: [LoadMoments; 2],
     pub(crate) height: Vec<f64>,
@@ -57,23 +56,21 @@ impl PairDiscretization {
         let pair = problem.as_pair().ok_or(PairError::NotThePair)?;
         let shared: Arc<Mesh> = mesh.into();
         let mesh = &*shared;
-        let around = VertexTriangles::new(mesh.points().len(), mesh.triangles());
         let moments_of = |i: usize| {
             LoadMoments::new(mesh, &pair.load()[i])
                 .map_err(|source| PairError::Load { membrane: i + 1, source })
         };
         let moments = [moments_of(0)?, moments_of(1)?];
-        let load = [0, 1].map(|i: usize| moments[i].vector(mesh, &around));
+        let load = [0, 1].map(|i: usize| moments[i].vector(mesh));
         let height = boundary_height(pair, mesh)?;
-        let stiffness = stiffness_around(mesh, &around);
-        let dual_area = dual_areas(mesh, &around);
+        let stiffness = stiffness(mesh);
+        let dual_area = dual_areas(mesh);
         let vertices = || 0..mesh.points().len();
         let interior: Vec<usize> = vertices().filter(|&a| mesh.kind()[a] == VertexKind::Interior).collect();
         let scales = Scales::of_pair(mesh, pair.tension(), &load, &height, &dual_area);
         scales.check_range(pair.tension()).map_err(|error| not_seen(&moments, &load).unwrap_or(error))?;
         Ok(Self {
             tension: pair.tension(),
-            interior_stiffness: principal_submatrix(&stiffness, &interior),
             stiffness,
             load,
             moments,
@@ -96,13 +93,13 @@ impl PairDiscretization {
     }
 
     /// `K`, the stiffness matrix with unit coefficient on all vertices, rows compressed, symmetric.
-    pub fn stiffness(&self) -> &CsMat<f64> {
+    pub fn stiffness(&self) -> &StiffnessMatrix {
         &self.stiffness
     }
 
-    /// `K_II`, its part on the unknowns: positive definite.
-    pub fn interior_stiffness(&self) -> &CsMat<f64> {
-        &self.interior_stiffness
+    /// `K_II`, its part on the unknowns: positive definite. Made when it is asked for.
+    pub fn interior_stiffness(&self) -> CsMat<f64> {
+        principal_submatrix(&self.stiffness, &self.interior)
     }
 
     /// `[F_1, F_2]`, the load vectors over vertices. Unit: force.
@@ -151,7 +148,7 @@ impl PairDiscretization {
         let [mu1, mu2] = self.tension;
         let gap_tension = mu1 * (mu2 / (mu1 + mu2));
         let ([mut ku1, mut ku2], [mut terms_1, mut terms_2]) = ([0.0; 2], [0.0; 2]);
-        for (&b, k) in self.row(a) {
+        for (b, k) in self.row(a) {
             let (u1, u2) = (u1[b], u2[b]);
             let gap = gap_tension * (u1 - u2).abs();
             ku1 += k * u1;
@@ -168,18 +165,17 @@ impl PairDiscretization {
 
     /// `(K v)_a`.
     pub(crate) fn stiffness_row(&self, a: usize, v: impl Fn(usize) -> f64) -> f64 {
-        self.row(a).map(|(&b, k)| k * v(b)).sum()
+        self.row(a).map(|(b, k)| k * v(b)).sum()
     }
 
     /// `K_aa`.
     pub(crate) fn stiffness_diagonal(&self, a: usize) -> f64 {
-        self.row(a).find(|(b, _)| **b == a).map_or(0.0, |(_, &k)| k)
+        self.row(a).find(|&(b, _)| b == a).map_or(0.0, |(_, k)| k)
     }
 
     /// The columns and entries of row `a` of `K`.
-    fn row(&self, a: usize) -> impl Iterator<Item = (&usize, &f64)> {
-        let range = self.stiffness.indptr().outer_inds_sz(a);
-        self.stiffness.indices()[range.clone()].iter().zip(&self.stiffness.data()[range])
+    fn row(&self, a: usize) -> impl Iterator<Item = (usize, f64)> {
+        row_of(&self.stiffness, a)
     }
 
     /// A function over vertices from its values at the unknowns and on the boundary (zero where unused).
@@ -274,7 +270,7 @@ fn boundary_height(pair: &Pair, mesh: &Mesh) -> Result<Vec<f64>, PairError> {
 }
 
 /// The rows and columns `chosen` (increasing) of a matrix.
-pub(crate) fn principal_submatrix(matrix: &CsMat<f64>, chosen: &[usize]) -> CsMat<f64> {
+pub(crate) fn principal_submatrix(matrix: &StiffnessMatrix, chosen: &[usize]) -> CsMat<f64> {
     let mut number = vec![usize::MAX; matrix.cols()];
     for (k, &a) in chosen.iter().enumerate() {
         number[a] = k;
@@ -283,8 +279,7 @@ pub(crate) fn principal_submatrix(matrix: &CsMat<f64>, chosen: &[usize]) -> CsMa
     let (mut columns, mut values) = (Vec::new(), Vec::new());
     start.push(0);
     for &a in chosen {
-        let row = matrix.outer_view(a).expect("a chosen row exists");
-        for (b, &value) in row.iter().filter(|&(b, _)| number[b] != usize::MAX) {
+        for (b, value) in row_of(matrix, a).filter(|&(b, _)| number[b] != usize::MAX) {
             columns.push(number[b]);
             values.push(value);
         }

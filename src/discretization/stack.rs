@@ -15,12 +15,10 @@ mod tests;
 
 use std::sync::Arc;
 
-use sprs::CsMat;
-
 use super::areas::dual_areas;
 use super::scales::Scales;
-use crate::fem::weighted_stiffness;
-use crate::mesh::{Mesh, VertexTriangles};
+use crate::fem::{StiffnessMatrix, row_of, weighted_stiffness};
+use crate::mesh::Mesh;
 use crate::problem::{ContactProblem, Field};
 
 pub(crate) use chain::Segment;
@@ -62,7 +60,7 @@ pub struct StackDiscretization {
     /// Tensions up to a factor, over triangles: membranes whose tensions are in proportion share one.
     profiles: Vec<Vec<f64>>,
     /// Their stiffness matrices, on all vertices.
-    stiffness: Vec<CsMat<f64>>,
+    stiffness: Vec<StiffnessMatrix>,
     /// Ceiling and floor over vertices.
     obstacles: [Option<Vec<f64>>; 2],
     /// The edges between the regions by which they are given.
@@ -120,8 +118,7 @@ impl StackDiscretization {
     ) -> Result<Self, StackError> {
         let shared: Arc<Mesh> = mesh.into();
         let mesh = &*shared;
-        let around = VertexTriangles::new(mesh.points().len(), mesh.triangles());
-        let dual_area = dual_areas(mesh, &around);
+        let dual_area = dual_areas(mesh);
         let parts = connected_parts(mesh);
         let mut profiles: Vec<Vec<f64>> = Vec::new();
         let (mut membranes, mut unknowns) = (Vec::new(), 0);
@@ -130,13 +127,13 @@ impl StackDiscretization {
             let name = k + 1;
             let tension = means(mesh, &membrane.tension, &format!("tension mu{name}"), rule, POSITIVE)?;
             let (factor, profile) = profile(&mut profiles, &tension);
-            let data = MembraneData::new(mesh, &around, membrane, name, rule, (factor, profile), unknowns)?;
+            let data = MembraneData::new(mesh, membrane, name, rule, (factor, profile), unknowns)?;
             unknowns += data.vertices.len();
             membranes.push(data);
             tensions.push(tension);
         }
-        let stiffness: Vec<CsMat<f64>> =
-            profiles.iter().map(|mu| weighted_stiffness(mesh, &around, |t| mu[t])).collect();
+        let stiffness: Vec<StiffnessMatrix> =
+            profiles.iter().map(|mu| weighted_stiffness(mesh, |t| mu[t])).collect();
         let mut obstacles = [
             obstacle(mesh, problem.ceiling(), "the ceiling", f64::min)?,
             obstacle(mesh, problem.floor(), "the floor", f64::max)?,
@@ -327,7 +324,7 @@ impl StackDiscretization {
     }
 
     /// `K_i` on all vertices, with the foundation.
-    pub(crate) fn matrix(&self, i: usize) -> CsMat<f64> {
+    pub(crate) fn matrix(&self, i: usize) -> StiffnessMatrix {
         let MembraneData { factor, profile, foundation, .. } = &self.membranes[i - 1];
         let mut matrix = self.stiffness[*profile].map(|k| factor * k);
         for (a, c) in foundation.iter().flatten().enumerate() {
@@ -341,12 +338,7 @@ impl StackDiscretization {
     /// The columns and entries of row `a` of `K_i`, without the foundation.
     pub(crate) fn stiffness_row(&self, i: usize, a: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         let MembraneData { factor, profile, .. } = &self.membranes[i - 1];
-        let matrix = &self.stiffness[*profile];
-        let range = matrix.indptr().outer_inds_sz(a);
-        matrix.indices()[range.clone()]
-            .iter()
-            .copied()
-            .zip(matrix.data()[range].iter().map(move |k| factor * k))
+        row_of(&self.stiffness[*profile], a).map(move |(b, k)| (b, factor * k))
     }
 
     /// `c_i |D_a|`, the entry that the foundation adds to the diagonal.
@@ -362,10 +354,8 @@ impl StackDiscretization {
     /// `(K_i u)_a` for membrane `i` (from 1), and the size of the terms that cancel in it.
     pub(crate) fn stiffness_times(&self, i: usize, a: usize, u: &[f64]) -> [f64; 2] {
         let MembraneData { factor, profile, foundation, .. } = &self.membranes[i - 1];
-        let matrix = &self.stiffness[*profile];
-        let range = matrix.indptr().outer_inds_sz(a);
         let [mut sum, mut terms] = [0.0; 2];
-        for (&b, k) in matrix.indices()[range.clone()].iter().zip(&matrix.data()[range]) {
+        for (b, k) in row_of(&self.stiffness[*profile], a) {
             sum += k * u[b];
             terms += (k * u[b]).abs();
         }

@@ -197,7 +197,7 @@ impl<'a> ErrorBounds<'a> {
         let trace = self.trace.get_or_init(|| Trace::new(self.problem, self.domain, d));
         let rest_sq = rest_sq(d, seen, &action);
         extend_to_boundary(d, displacement, &mut action);
-        let fluxes = WedgeFluxes::new(d, &trace.around, displacement, &action);
+        let fluxes = WedgeFluxes::new(d, displacement, &action);
         let cells = Cells { d, displacement, lambda: &action, fluxes, trace };
         let (sums, indicators) = cells.sum()?;
         let friedrichs = friedrichs(cells.sides());

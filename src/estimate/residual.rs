@@ -40,12 +40,12 @@ pub fn residual_indicators(
         let slope = |k: usize| gradient(mesh.corners(k), mesh.triangles()[k].map(|a| displacement[i][a]));
         for (a, b, sides) in half_edges.edges() {
             let [one, other] = sides else { continue };
-            let (p, q) = (slope(one.triangle), slope(other.triangle));
+            let (p, q) = (slope(one.triangle()), slope(other.triangle()));
             // Along the edge, the slopes are the same.
             let jump_sq = distance_sq(p, q);
             let share = 0.5 * mu * distance_sq(mesh.points()[a], mesh.points()[b]) * jump_sq;
-            indicators[one.triangle] += share;
-            indicators[other.triangle] += share;
+            indicators[one.triangle()] += share;
+            indicators[other.triangle()] += share;
         }
     }
     Ok(indicators)

@@ -28,7 +28,6 @@ mod tests;
 use super::{BoundParts, DataWarning, ErrorBound};
 use crate::action::StackSolution;
 use crate::discretization::{IntegrationRule, StackDiscretization};
-use crate::mesh::VertexTriangles;
 use actions::Actions;
 use cells::{Cells, Sums};
 pub use error::NoBound;
@@ -63,8 +62,7 @@ impl ErrorBound {
         displacement: &[Vec<f64>],
         actions: Actions,
     ) -> Result<Self, NoBound> {
-        let around = VertexTriangles::new(d.mesh().points().len(), d.mesh().triangles());
-        let cells = Cells::new(d, displacement, &actions, &around)?;
+        let cells = Cells::new(d, displacement, &actions)?;
         let (sums, indicators) = cells.sum();
         let alpha_sq: f64 = cells
             .layers()

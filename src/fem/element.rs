@@ -2,15 +2,15 @@
 
 use crate::geometry::twice_signed_area;
 
-/// `K_ij = int grad phi_i . grad phi_j` on the triangle with these corners: `e_i . e_j / (4 |T|)`, where `e_i` is the
-/// edge opposite to corner `i`. Symmetric to the last bit.
-pub(crate) fn local_stiffness(corners: [[f64; 2]; 3]) -> [[f64; 3]; 3] {
+/// The row `K_ij = int grad phi_i . grad phi_j`, `j = 0, 1, 2`, of corner `i` of the triangle with these corners: `e_i . e_j / (4 |T|)`,
+/// where `e_i` is the edge opposite to corner `i`. Symmetric to the last bit.
+pub(crate) fn local_stiffness_row(corners: [[f64; 2]; 3], i: usize) -> [f64; 3] {
     let edges = [0, 1, 2].map(|i| {
         let [from, to] = [corners[(i + 1) % 3], corners[(i + 2) % 3]];
         [to[0] - from[0], to[1] - from[1]]
     });
-    let scale = 0.5 / twice_signed_area(corners);
-    edges.map(|e| edges.map(|f| scale * (e[0] * f[0] + e[1] * f[1])))
+    let (scale, e) = (0.5 / twice_signed_area(corners), edges[i]);
+    edges.map(|f| scale * (e[0] * f[0] + e[1] * f[1]))
 }
 
 /// The gradient of the affine function with these values at the corners.
@@ -24,6 +24,10 @@ pub(crate) fn gradient(corners: [[f64; 2]; 3], values: [f64; 3]) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn local_stiffness(corners: [[f64; 2]; 3]) -> [[f64; 3]; 3] {
+        [0, 1, 2].map(|i| local_stiffness_row(corners, i))
+    }
 
     #[test]
     fn reference_triangle_has_the_textbook_stiffness() {

@@ -1,7 +1,7 @@
 //! Load vectors.
 
 use super::moments::LoadMoments;
-use crate::mesh::{Mesh, VertexTriangles};
+use crate::mesh::Mesh;
 use crate::parallel::prelude::*;
 use crate::problem::{EvaluationError, Function};
 
@@ -15,8 +15,7 @@ use crate::problem::{EvaluationError, Function};
 /// [`EvaluationError`] when `f` fails, or is NaN or infinite at a quadrature point, naming the first in the order of the
 /// triangles.
 pub fn load(mesh: &Mesh, f: &Function) -> Result<Vec<f64>, EvaluationError> {
-    let around = VertexTriangles::new(mesh.points().len(), mesh.triangles());
-    Ok(LoadMoments::new(mesh, f)?.vector(mesh, &around))
+    Ok(LoadMoments::new(mesh, f)?.vector(mesh))
 }
 
 /// `int_K f phi_i` for the three corners of each triangle `K`: what [`load`] adds up.

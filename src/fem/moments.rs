@@ -7,7 +7,7 @@ use super::dual_norm::dual_norm;
 use super::quadrature::DEGREE_4;
 use super::second_rule::SecondRule;
 use crate::geometry::{poincare, twice_signed_area};
-use crate::mesh::{Mesh, VertexTriangles, corner_of};
+use crate::mesh::{Mesh, corner_of};
 use crate::parallel::blocks_of;
 use crate::parallel::prelude::*;
 use crate::problem::{EvaluationError, Function};
@@ -107,9 +107,9 @@ impl LoadMoments {
     }
 
     /// The load vector: the sums of the integrals around the vertices.
-    pub(crate) fn vector(&self, mesh: &Mesh, around: &VertexTriangles) -> Vec<f64> {
+    pub(crate) fn vector(&self, mesh: &Mesh) -> Vec<f64> {
         let on_element = |t: usize, a: usize| self.on(mesh, t).integrals[corner_of(mesh.triangles()[t], a)];
-        let at = |a: usize| around.of(a).iter().map(|&t| on_element(t, a)).sum();
+        let at = |a: usize| mesh.around().triangles(a).map(|t| on_element(t, a)).sum();
         (0..mesh.points().len()).into_par_iter().map(at).collect()
     }
 }

@@ -1,6 +1,6 @@
 //! The wedges `D_a cap K` around each vertex, in order.
 
-use crate::mesh::{Mesh, VertexTriangles, corner_of};
+use crate::mesh::{Mesh, corner_of};
 
 /// Wedges that follow one another counterclockwise around a vertex: around an interior one they close, at a boundary
 /// vertex there is one fan for each sector of the domain.
@@ -14,14 +14,16 @@ pub(super) struct Fan {
 
 /// All fans; each wedge is in one of them. Linear time, but for sorting the triangles around each vertex.
 pub(super) fn fans(mesh: &Mesh) -> Vec<Fan> {
-    let around = VertexTriangles::new(mesh.points().len(), mesh.triangles());
     let (mut walk, mut sides, mut fans) = (Walk::default(), Vec::new(), Vec::new());
     for a in 0..mesh.points().len() {
-        let triangles = around.of(a);
+        let triangles = mesh.around().of(a);
         sides.clear();
-        sides.extend(triangles.iter().map(|&k| wedge_of(mesh, k, a).1));
+        sides.extend(mesh.around().triangles(a).map(|k| wedge_of(mesh, k, a).1));
         walk.fans(&sides, |fan, closed| {
-            let wedge = |&place: &usize| 3 * triangles[place] + wedge_of(mesh, triangles[place], a).0;
+            let wedge = |&place: &usize| {
+                let k = triangles[place] as usize;
+                3 * k + wedge_of(mesh, k, a).0
+            };
             fans.push(Fan { wedges: fan.iter().map(wedge).collect(), closed });
         });
     }

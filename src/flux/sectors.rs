@@ -10,14 +10,13 @@ use super::fan::{Walk, wedge_of};
 use super::field::{constant_outward, through};
 use super::reconstruct::flux_on;
 use super::wedges::{Change, Products};
-use crate::mesh::{Mesh, VertexTriangles};
+use crate::mesh::Mesh;
 use crate::parallel::prelude::*;
 use crate::parallel::{BLOCK, blocks};
 
 /// What a flux is made from: a displacement, and the forces that it has to balance.
 pub(crate) struct Balanced<'a, 'b, S> {
     pub(crate) mesh: &'a Mesh,
-    pub(crate) around: &'a VertexTriangles,
     /// The tension on each triangle, as it is in the stiffness matrix.
     pub(crate) tension: &'b [f64],
     /// The displacement over vertices.
@@ -39,7 +38,6 @@ pub(crate) struct Balanced<'a, 'b, S> {
 /// membrane is not fixed, and as near to `-mu grad u` as that allows.
 pub(crate) struct MembraneFlux<'a> {
     mesh: &'a Mesh,
-    around: &'a VertexTriangles,
     /// `-mu grad u_h` on the triangles.
     discrete: Vec<[f64; 2]>,
     /// In the order of the triangles around the vertices.
@@ -84,7 +82,8 @@ impl<'a, S: Fn(usize, usize) -> f64 + Sync> Balanced<'a, '_, S> {
     /// # Errors
     /// [`MeetInAVertex`].
     pub(crate) fn flux(self) -> Result<MembraneFlux<'a>, MeetInAVertex> {
-        let Self { mesh, around, tension, displacement, .. } = self;
+        let Self { mesh, tension, displacement, .. } = self;
+        let around = mesh.around();
         let discrete = |k: usize| flux_on(mesh, k, tension[k], displacement);
         let discrete: Vec<_> =
             (0..mesh.triangles().len()).into_par_iter().with_min_len(BLOCK).map(discrete).collect();
@@ -109,7 +108,7 @@ impl<'a, S: Fn(usize, usize) -> f64 + Sync> Balanced<'a, '_, S> {
             Ok(())
         };
         tasks.into_par_iter().map(of_task).collect::<Vec<_>>().into_iter().collect::<Result<(), _>>()?;
-        Ok(MembraneFlux { mesh, around, discrete, changes, rest })
+        Ok(MembraneFlux { mesh, discrete, changes, rest })
     }
 
     /// Fills the row of changes of a vertex, and tells the action that closes the balance less the one that is given.
@@ -121,16 +120,19 @@ impl<'a, S: Fn(usize, usize) -> f64 + Sync> Balanced<'a, '_, S> {
         row: &mut [Change],
     ) -> Result<f64, MeetInAVertex> {
         let Patch { sides, walk, sectors } = patch;
-        let triangles = self.around.of(a);
+        let around = self.mesh.around();
+        let triangles = around.of(a);
         sides.clear();
-        sides.extend(triangles.iter().map(|&k| wedge_of(self.mesh, k, a).1));
+        sides.extend(around.triangles(a).map(|k| wedge_of(self.mesh, k, a).1));
         sectors.clear();
         walk.fans(sides, |fan, closed| self.add_sectors(a, sides, fan, closed, sectors));
         let is_one = sectors.len() == 1;
         let mut rest = 0.0;
         for (ends, places) in sectors {
-            let wedges: Vec<Wedge> =
-                places.iter().map(|&place| self.wedge(a, triangles[place], place, discrete)).collect();
+            let wedges: Vec<Wedge> = places
+                .iter()
+                .map(|&place| self.wedge(a, triangles[place] as usize, place, discrete))
+                .collect();
             let is_fixed = self.is_fixed[a];
             if (is_fixed || !is_one) && !ends.contains(&End::Fixed) {
                 return Err(MeetInAVertex(a));
@@ -258,8 +260,7 @@ impl MembraneFlux<'_> {
     /// the first edge, barycentre) and (vertex, barycentre, midpoint of the last edge), edge `j` opposite to corner `j`. Unit: force.
     pub(crate) fn outward(&self, k: usize, corner: usize, halves: [[[f64; 2]; 3]; 2]) -> [[f64; 3]; 2] {
         let a = self.mesh.triangles()[k][corner];
-        let place = self.around.of(a).binary_search(&k).expect("a triangle is around its corners");
-        let Change { entering, source } = self.changes[self.around.row(a).start + place];
+        let Change { entering, source } = self.changes[self.mesh.around().place(a, k)];
         let (across, leaving) = (entering + 0.5 * source, entering + source);
         let changes = [[0.0, across, -entering], [0.0, leaving, -across]];
         [0, 1].map(|half| {

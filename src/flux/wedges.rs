@@ -9,7 +9,7 @@ use super::field::through;
 use super::reconstruct::flux_on;
 use crate::discretization::{Displacement, PairDiscretization};
 use crate::fem::LoadMoments;
-use crate::mesh::{Mesh, VertexTriangles};
+use crate::mesh::Mesh;
 use crate::parallel::prelude::*;
 use crate::parallel::{BLOCK, blocks};
 
@@ -24,7 +24,6 @@ pub(crate) struct WedgeFluxes<'a> {
 /// What they are made from.
 struct Data<'a> {
     mesh: &'a Mesh,
-    around: &'a VertexTriangles,
     load: &'a [LoadMoments; 2],
     lambda: &'a [f64],
     elements: Vec<Element>,
@@ -86,22 +85,17 @@ struct Wedge {
 }
 
 impl<'a> WedgeFluxes<'a> {
-    /// For the displacements `[u1, u2]` over vertices; `around` are the triangles around the
-    /// vertices of the mesh of `d`. Around an interior vertex the action follows from the balance; on the dual cell of a boundary vertex
+    /// For the displacements `[u1, u2]` over vertices. Around an interior vertex the action follows from the balance; on the dual cell of a boundary vertex
     /// it may be chosen, and is that of `lambda`, over vertices.
-    pub(crate) fn new(
-        d: &'a PairDiscretization,
-        around: &'a VertexTriangles,
-        displacement: &Displacement,
-        lambda: &'a [f64],
-    ) -> Self {
+    pub(crate) fn new(d: &'a PairDiscretization, displacement: &Displacement, lambda: &'a [f64]) -> Self {
         let mesh = d.mesh();
+        let around = mesh.around();
         let element = |k: usize| Element {
             area: mesh.triangle_area(k),
             flux: [0, 1].map(|i| flux_on(mesh, k, d.tension()[i], &displacement[i])),
         };
         let elements = (0..mesh.triangles().len()).into_par_iter().with_min_len(BLOCK).map(element).collect();
-        let data = Data { mesh, around, load: &d.moments, lambda, elements };
+        let data = Data { mesh, load: &d.moments, lambda, elements };
         let vertices = mesh.points().len();
         let mut changes = vec![[Change::default(); 2]; 3 * mesh.triangles().len()];
         let mut rest = changes.as_mut_slice();
@@ -147,8 +141,7 @@ impl<'a> WedgeFluxes<'a> {
 
     fn change(&self, k: usize, corner: usize) -> [Change; 2] {
         let a = self.data.mesh.triangles()[k][corner];
-        let place = self.data.around.of(a).binary_search(&k).expect("a triangle is around its corners");
-        self.changes[self.data.around.row(a).start + place]
+        self.changes[self.data.mesh.around().place(a, k)]
     }
 }
 
@@ -158,7 +151,7 @@ impl Data<'_> {
         let Patch { wedges, sides, walk } = patch;
         wedges.clear();
         sides.clear();
-        for &k in self.around.of(a) {
+        for k in self.mesh.around().triangles(a) {
             let (corner, [next, last]) = wedge_of(self.mesh, k, a);
             wedges.push(self.wedge(k, corner, [a, next, last]));
             sides.push([next, last]);

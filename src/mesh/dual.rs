@@ -1,7 +1,7 @@
 //! The dual mesh `D_h` of section 4.2 and the triangulation `S_h` between it and `T_h`.
 
 use super::topology::{Midpoints, corner_of};
-use super::{Mesh, MeshError, VertexKind, VertexTriangles};
+use super::{Mesh, MeshError, VertexKind};
 use crate::geometry::twice_signed_area;
 
 /// `S_h` on all of `omega`: every triangle `K` divided into six by its medians.
@@ -27,7 +27,8 @@ impl SubTriangulation {
         let edges = midpoints.points.len();
         let mut points = [mesh.points.as_slice(), &midpoints.points].concat();
         let mut triangles = Vec::with_capacity(6 * mesh.triangles.len());
-        for (k, (corners, midpoints)) in mesh.triangles.iter().zip(&midpoints.of_triangle).enumerate() {
+        for (k, corners) in mesh.triangles.iter().enumerate() {
+            let midpoints = midpoints.of_triangle(k);
             let [a, b, c] = mesh.corners(k);
             let barycentre = points.len();
             points.push([(a[0] + b[0] + c[0]) / 3.0, (a[1] + b[1] + c[1]) / 3.0]);
@@ -77,7 +78,7 @@ pub struct DualMesh {
 impl DualMesh {
     /// Collects the polygons from the sub-triangulation of `mesh`. Linear time.
     pub fn new(mesh: &Mesh, sub: &SubTriangulation) -> Self {
-        let around = VertexTriangles::new(mesh.points.len(), &mesh.triangles);
+        let around = mesh.around();
         let vertices: Vec<usize> =
             (0..mesh.points.len()).filter(|&a| mesh.kind[a] == VertexKind::Interior).collect();
         let (mut start, mut corners) = (vec![0], Vec::new());
@@ -85,7 +86,7 @@ impl DualMesh {
         let mut leaves = vec![(0, 0); sub.mesh.points.len()];
         for &a in &vertices {
             let mut midpoint = 0;
-            for &k in around.of(a) {
+            for k in around.triangles(a) {
                 let i = corner_of(mesh.triangles[k], a);
                 let [_, first, barycentre] = sub.mesh.triangles[6 * k + 2 * i];
                 let [_, _, next] = sub.mesh.triangles[6 * k + 2 * i + 1];
@@ -148,12 +149,12 @@ mod tests {
         for mesh in meshes() {
             let sub = SubTriangulation::new(&mesh).unwrap();
             let dual = DualMesh::new(&mesh, &sub);
-            let around = VertexTriangles::new(mesh.points().len(), mesh.triangles());
+            let around = mesh.around();
             assert!(!dual.vertices().is_empty());
             for (k, &a) in dual.vertices().iter().enumerate() {
                 assert_eq!(mesh.kind()[a], VertexKind::Interior);
                 assert_eq!(dual.cell(k).len(), 2 * around.of(a).len());
-                let patch: f64 = around.of(a).iter().map(|&t| mesh.triangle_area(t)).sum();
+                let patch: f64 = around.triangles(a).map(|t| mesh.triangle_area(t)).sum();
                 assert!((dual.area(k) - patch / 3.0).abs() < ROUNDING, "(4.17)");
                 assert!((dual.area(k) - patch / 4.0).abs() > ROUNDING, "and not another fraction");
             }

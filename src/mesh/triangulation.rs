@@ -1,9 +1,10 @@
 //! The mesh itself: what it consists of, and how it was refined.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use super::ancestry::Parents;
 use super::groups::Groups;
+use super::topology::VertexTriangles;
 use super::views::Views;
 use crate::geometry::{distance_sq, twice_signed_area};
 
@@ -29,6 +30,8 @@ pub struct Mesh {
     pub(super) ancestry: Vec<Arc<Parents>>,
     pub(super) groups: Groups,
     pub(super) views: Views,
+    /// Once somebody has asked for it.
+    pub(super) around: OnceLock<VertexTriangles>,
 }
 
 impl Mesh {
@@ -55,6 +58,11 @@ impl Mesh {
     /// The data views. Refinements inherit them.
     pub fn views(&self) -> &Views {
         &self.views
+    }
+
+    /// The triangles around each vertex.
+    pub(crate) fn around(&self) -> &VertexTriangles {
+        self.around.get_or_init(|| VertexTriangles::new(self.points.len(), &self.triangles))
     }
 
     /// The corners of triangle `t`, counterclockwise.

@@ -21,9 +21,8 @@ pub(crate) use matrix::{Pattern, Values};
 pub(crate) use runs::{LONGEST, Runs};
 pub(crate) use transfer::Transfer;
 
-use sprs::CsMat;
-
 use crate::discretization::PairDiscretization;
+use crate::fem::{StiffnessMatrix, row_of};
 use crate::mesh::{Mesh, VertexKind};
 use crate::parallel::BLOCK;
 use crate::parallel::prelude::*;
@@ -87,7 +86,7 @@ impl Hierarchy {
     }
 
     /// Makes the levels of a stiffness matrix over the vertices of a mesh with this genealogy; those with an unknown are `free`.
-    pub(crate) fn over(k: &CsMat<f64>, free: &[bool], genealogy: &Genealogy) -> Self {
+    pub(crate) fn over(k: &StiffnessMatrix, free: &[bool], genealogy: &Genealogy) -> Self {
         let banded = (!is_banded(k.rows(), bandwidth(k, |a| a))).then(|| banded_order(k, genealogy));
         let (coloring, vertex) = finest_coloring(k, free, banded.as_deref());
         let (pattern, values) = compact_stiffness(k, free, &vertex);
@@ -230,22 +229,19 @@ fn coarsen(finest_first: &mut Vec<Level>) {
 }
 
 /// The largest distance of two neighbours that are in these places.
-fn bandwidth(k: &CsMat<f64>, place: impl Fn(usize) -> usize + Sync) -> usize {
+fn bandwidth(k: &StiffnessMatrix, place: impl Fn(usize) -> usize + Sync) -> usize {
     let reach = |a: usize| {
         let row = &k.indices()[k.indptr().outer_inds_sz(a)];
-        row.iter().map(|&b| place(a).abs_diff(place(b))).max().unwrap_or(0)
+        row.iter().map(|&b| place(a).abs_diff(place(b as usize))).max().unwrap_or(0)
     };
     (0..k.rows()).into_par_iter().with_min_len(BLOCK).map(reach).max().unwrap_or(0)
 }
 
 /// Windows and colours of the finest level, and the vertices of its rows; `order` is the order that the windows follow.
-fn finest_coloring(k: &CsMat<f64>, free: &[bool], order: Option<&[u32]>) -> (Coloring, Vec<u32>) {
+fn finest_coloring(k: &StiffnessMatrix, free: &[bool], order: Option<&[u32]>) -> (Coloring, Vec<u32>) {
     let position = order.map(inverse);
     let vertex = |i: usize| order.map_or(i, |order| order[i] as usize);
-    let row = |a: usize| {
-        let range = k.indptr().outer_inds_sz(a);
-        k.indices()[range.clone()].iter().zip(&k.data()[range]).map(|(&b, &value)| (b, value))
-    };
+    let row = |a: usize| row_of(k, a);
     let place = |b: usize| position.as_ref().map_or(b, |position| position[b] as usize);
     let coupled = |i: usize| {
         let a = vertex(i);

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::prelude::*;
+use super::scope;
 
 /// Vertices, triangles or rows that are worked on together.
 pub(crate) const BLOCK: usize = 4096;
@@ -15,6 +16,19 @@ pub(crate) fn blocks(count: usize) -> Vec<Range<usize>> {
 /// `0..count` in blocks of `size`.
 pub(crate) fn blocks_of(size: usize, count: usize) -> Vec<Range<usize>> {
     (0..count).step_by(size).map(|first| first..(first + size).min(count)).collect()
+}
+
+/// Blocks put together, all of them at once.
+pub(crate) fn concat<T: Copy + Default + Send + Sync>(blocks: Vec<&[T]>) -> Vec<T> {
+    let mut all = vec![T::default(); blocks.iter().map(|block| block.len()).sum()];
+    let mut rest = all.as_mut_slice();
+    scope(|scope| {
+        for block in blocks {
+            let place = rest.split_off_mut(..block.len()).expect("blocks are parts of the whole");
+            scope.spawn(move |_| place.copy_from_slice(block));
+        }
+    });
+    all
 }
 
 /// `term(0) + ... + term(count - 1)`, in parallel, in an order that does not depend on the number of threads.
@@ -38,6 +52,18 @@ mod tests {
             assert!(blocks.iter().all(|block| !block.is_empty() && block.len() <= BLOCK));
             assert!(blocks.into_iter().flatten().eq(0..count), "{count}");
         }
+    }
+
+    #[test]
+    fn blocks_are_put_together_in_order() {
+        let numbers: Vec<usize> = (0..3 * BLOCK + 5).collect();
+        let parts = |[first, second]: [usize; 2]| {
+            vec![&numbers[..first], &numbers[first..second], &numbers[second..]]
+        };
+        assert_eq!(concat(parts([BLOCK, 2 * BLOCK + 1])), numbers);
+        assert_eq!(concat(parts([0, 0])), numbers);
+        assert!(concat::<usize>(Vec::new()).is_empty());
+        assert_ne!(concat(parts([BLOCK, BLOCK]).into_iter().rev().collect()), numbers);
     }
 
     #[test]

@@ -34,7 +34,7 @@ pub fn contact_qp(d: &PairDiscretization) -> QpProblem {
     let n = d.interior().len();
     let q = (0..2).flat_map(|i| linear_term(d, i)).collect();
     let scales = d.scales();
-    QpProblem::new(block_diagonal_upper(d.interior_stiffness(), d.tension()), q, gap_matrix(n), vec![0.0; n])
+    QpProblem::new(block_diagonal_upper(&d.interior_stiffness(), d.tension()), q, gap_matrix(n), vec![0.0; n])
         .and_then(|qp| qp.with_scales(scales.displacement, scales.force_density * scales.dual_area))
         .and_then(|qp| qp.with_constant(energy_of_lift(d)))
         .expect("a discretization makes a valid quadratic program")

@@ -51,7 +51,8 @@ impl Data {
 fn solution_norm(d: &PairDiscretization, solution: &PairSolution) -> f64 {
     let l2_sq = |v: &[f64]| v.iter().zip(d.dual_area()).map(|(v, area)| area * v * v).sum::<f64>();
     let h1 = |u: &[f64]| {
-        let seminorm_sq: f64 = d.stiffness().iter().map(|(k, (a, b))| k * u[a] * u[b]).sum();
+        let seminorm_sq: f64 =
+            d.stiffness().iter().map(|(k, (a, b))| k * u[a as usize] * u[b as usize]).sum();
         (seminorm_sq + l2_sq(u)).sqrt()
     };
     let [u1, u2] = solution.displacement();

@@ -87,7 +87,7 @@ pub(super) fn borders(mesh: &Mesh, field: &Field, datum: &str) -> Result<Vec<[us
     }
     let half_edges = HalfEdges::new(mesh.points().len(), mesh.triangles());
     let is_border = |sides: &[HalfEdge]| {
-        sides.windows(2).any(|pair| piece_of[pair[0].triangle] != piece_of[pair[1].triangle])
+        sides.windows(2).any(|pair| piece_of[pair[0].triangle()] != piece_of[pair[1].triangle()])
     };
     let edges = half_edges.edges().filter(|(_, _, sides)| is_border(sides));
     Ok(edges.map(|(lower, upper, _)| [lower, upper]).collect())

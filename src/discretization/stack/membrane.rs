@@ -4,7 +4,7 @@ use super::error::StackError;
 use super::fields::{IntegrationRule, NOT_NEGATIVE, borders, means, moments};
 use super::supports::Held;
 use crate::fem::LoadMoments;
-use crate::mesh::{Mesh, VertexKind, VertexTriangles};
+use crate::mesh::{Mesh, VertexKind};
 use crate::parallel::prelude::*;
 use crate::problem::Membrane;
 
@@ -34,7 +34,6 @@ pub(crate) struct MembraneData {
 impl MembraneData {
     pub(super) fn new(
         mesh: &Mesh,
-        around: &VertexTriangles,
         membrane: &Membrane,
         name: usize,
         rule: IntegrationRule,
@@ -47,11 +46,11 @@ impl MembraneData {
             _ => Some(means(mesh, &membrane.foundation, &format!("foundation c{name}"), rule, NOT_NEGATIVE)?),
         };
         let over_vertices = |term: &(dyn Fn(usize) -> f64 + Sync)| -> Vec<f64> {
-            let at = |a: usize| around.of(a).iter().map(|&t| term(t)).sum();
+            let at = |a: usize| mesh.around().triangles(a).map(|t| term(t)).sum();
             (0..mesh.points().len()).into_par_iter().map(at).collect()
         };
         let moments = moments(mesh, &membrane.load, &format!("load f{name}"), rule)?;
-        let mut load = moments.vector(mesh, around);
+        let mut load = moments.vector(mesh);
         for line in &held.line_loads {
             line.ends.iter().zip(line.force).for_each(|(&a, force)| load[a] += force);
         }

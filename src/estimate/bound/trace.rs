@@ -4,7 +4,7 @@ use crate::discretization::PairDiscretization;
 use crate::estimate::MeasureError;
 use crate::flux::WedgeFluxes;
 use crate::geometry::distance_sq;
-use crate::mesh::{Circle, Mesh, VertexKind, VertexTriangles};
+use crate::mesh::{Circle, Mesh, VertexKind};
 use crate::problem::{ContactProblem, Domain, EvaluationError, Function, Pair};
 
 /// A boundary vertex lies on the circle up to this fraction of the radius: rounding of its coordinates.
@@ -30,7 +30,6 @@ const GAUSS: [(f64, f64); 3] =
 pub(super) struct Trace<'a> {
     pair: &'a Pair,
     mesh: &'a Mesh,
-    pub(super) around: VertexTriangles,
     height_h: &'a [f64],
     /// The circle around a disk, if the mesh has all its boundary vertices on it.
     pub(super) circle: Option<Circle>,
@@ -70,9 +69,8 @@ impl<'a> Trace<'a> {
             })
         };
         let circle = domain.and_then(Circle::of_domain).filter(has_its_boundary_on);
-        let around = VertexTriangles::new(d.mesh().points().len(), d.mesh().triangles());
         let pair = problem.as_pair().expect("a discretization of the pair belongs to one");
-        Self { pair, mesh: d.mesh(), around, height_h: d.height(), circle }
+        Self { pair, mesh: d.mesh(), height_h: d.height(), circle }
     }
 
     /// The lift `E` of `g - g_h` from the boundary edges of triangle `k`: on the ray from a point of the edge to an apex, the value
@@ -167,8 +165,8 @@ impl<'a> Trace<'a> {
         (0..3).filter(move |&corner| {
             let [a, b] = [0, 1].map(|j| triangle[(corner + j) % 3]);
             let is_boundary = |a: usize| self.mesh.kind()[a] == VertexKind::Boundary;
-            let shared = |&&t: &&usize| t != k && self.mesh.triangles()[t].contains(&b);
-            is_boundary(a) && is_boundary(b) && self.around.of(a).iter().find(shared).is_none()
+            let shared = |&t: &usize| t != k && self.mesh.triangles()[t].contains(&b);
+            is_boundary(a) && is_boundary(b) && self.mesh.around().triangles(a).find(shared).is_none()
         })
     }
 

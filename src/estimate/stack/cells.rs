@@ -8,7 +8,6 @@ use crate::discretization::{Samples, StackDiscretization, at_samples};
 use crate::fem::{DEGREE_4, gradient};
 use crate::flux::{Balanced, MeetInAVertex, MembraneFlux, constant_outward, inner_product, value};
 use crate::geometry::{poincare, twice_signed_area};
-use crate::mesh::VertexTriangles;
 use crate::parallel::BLOCK;
 use crate::parallel::prelude::*;
 
@@ -126,20 +125,19 @@ impl<'a> Cells<'a> {
         d: &'a StackDiscretization,
         displacement: &'a [Vec<f64>],
         actions: &'a Actions,
-        around: &'a VertexTriangles,
     ) -> Result<Self, NoBound> {
         let beside = |ends: [usize; 2]| {
-            let corner = |k: &usize| {
-                let corners = d.mesh().triangles()[*k];
+            let corner = |k: usize| {
+                let corners = d.mesh().triangles()[k];
                 (0..3).find(|&j| {
                     let (a, b) = (corners[j], corners[(j + 1) % 3]);
                     [a.min(b), a.max(b)] == ends
                 })
             };
-            let found = around.of(ends[0]).iter().find_map(|k| Some((*k, corner(k)?)));
+            let found = d.mesh().around().triangles(ends[0]).find_map(|k| Some((k, corner(k)?)));
             found.expect("an edge belongs to a triangle")
         };
-        let layer = |(i, u): (usize, &'a Vec<f64>)| LayerData::new(d, i, u, actions, around, &beside);
+        let layer = |(i, u): (usize, &'a Vec<f64>)| LayerData::new(d, i, u, actions, &beside);
         let gap = |gap: &'a GapAction| {
             let lines = gap.lines.iter().map(|&(ends, [lower, upper])| {
                 let (k, corner) = beside(ends);
@@ -305,7 +303,6 @@ impl<'a> LayerData<'a> {
         i: usize,
         displacement: &'a [f64],
         actions: &Actions,
-        around: &'a VertexTriangles,
         beside: &impl Fn([usize; 2]) -> (usize, usize),
     ) -> Result<Self, NoBound> {
         let mesh = &**d.mesh();
@@ -326,7 +323,6 @@ impl<'a> LayerData<'a> {
         };
         let balanced = Balanced {
             mesh,
-            around,
             tension: &tension,
             displacement,
             wedge_force,

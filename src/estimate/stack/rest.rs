@@ -70,7 +70,7 @@ fn neighbours(d: &StackDiscretization) -> Neighbours {
     };
     for (a, b, sides) in HalfEdges::new(mesh.points().len(), mesh.triangles()).edges() {
         let [one, other] = sides else { continue };
-        let [p, q] = [one, other].map(|side| (side.triangle, opposite(side.triangle, [a, b])));
+        let [p, q] = [one, other].map(|side| (side.triangle(), opposite(side.triangle(), [a, b])));
         neighbours[p.0][p.1] = Some(q);
         neighbours[q.0][q.1] = Some(p);
     }

@@ -11,12 +11,12 @@ fn slivers() -> Mesh {
 }
 
 /// `(K v)_a`.
-fn row_times(k: &CsMat<f64>, a: usize, v: impl Fn(usize) -> f64) -> f64 {
+fn row_times(k: &StiffnessMatrix, a: usize, v: impl Fn(usize) -> f64) -> f64 {
     k.outer_view(a).unwrap().iter().map(|(b, value)| value * v(b)).sum()
 }
 
 /// `u'K v`.
-fn form(k: &CsMat<f64>, u: &[f64], v: &[f64]) -> f64 {
+fn form(k: &StiffnessMatrix, u: &[f64], v: &[f64]) -> f64 {
     (0..u.len()).map(|a| u[a] * row_times(k, a, |b| v[b])).sum()
 }
 
@@ -25,7 +25,7 @@ fn nodal(mesh: &Mesh, f: impl Fn(f64, f64) -> f64) -> Vec<f64> {
 }
 
 /// The matrix to the last bit.
-fn bits(k: &CsMat<f64>) -> (Vec<usize>, Vec<usize>, Vec<u64>) {
+fn bits(k: &StiffnessMatrix) -> (Vec<u32>, Vec<u32>, Vec<u64>) {
     let values = k.data().iter().map(|value| value.to_bits()).collect();
     (k.indptr().into_raw_storage().to_vec(), k.indices().to_vec(), values)
 }
@@ -142,7 +142,7 @@ fn numbering_changes_the_order_alone() {
     let (k, permuted) = (stiffness(&mesh), stiffness(&other));
     assert_eq!(k.nnz(), permuted.nnz());
     for (&value, (a, b)) in k.iter() {
-        let found = permuted.get(number[a], number[b]).expect("the same entries");
+        let found = permuted.get(number[a as usize], number[b as usize]).expect("the same entries");
         assert!((found - value).abs() < ROUNDING);
     }
     assert_ne!(bits(&k), bits(&permuted));

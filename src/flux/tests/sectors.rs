@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use crate::fem::gradient;
 use crate::flux::{Balanced, MeetInAVertex, constant_outward, inner_product};
 use crate::mesh::samples::{irregular, square_without};
-use crate::mesh::{Mesh, SubTriangulation, VertexKind, VertexTriangles};
+use crate::mesh::{Mesh, SubTriangulation, VertexKind};
 use crate::numeric::Random;
 
 /// Rounding of sums around a vertex.
@@ -14,7 +14,6 @@ const ROUNDING: f64 = 1e-12;
 /// A membrane that is fixed on the boundary edges of which both ends are `fixed`, with forces drawn at random.
 struct Sample {
     mesh: Mesh,
-    around: VertexTriangles,
     displacement: Vec<f64>,
     tension: Vec<f64>,
     force: Vec<[f64; 3]>,
@@ -26,7 +25,6 @@ struct Sample {
 impl Sample {
     fn new(mesh: Mesh, fixed: impl Fn([f64; 2]) -> bool) -> Self {
         let mut random = Random::new(5);
-        let around = VertexTriangles::new(mesh.points().len(), mesh.triangles());
         let mut fixed_edges: Vec<[usize; 2]> = Vec::new();
         let mut edge_force = HashMap::new();
         for [a, b] in crate::mesh::boundary_edges(&mesh) {
@@ -43,7 +41,7 @@ impl Sample {
         let action = drawn(mesh.points().len());
         let tension = drawn(mesh.triangles().len()).into_iter().map(|mu| 2.0 + mu).collect();
         let force = (0..mesh.triangles().len()).map(|_| drawn(3).try_into().unwrap()).collect();
-        Self { around, displacement, tension, force, action, fixed_edges, edge_force, mesh }
+        Self { displacement, tension, force, action, fixed_edges, edge_force, mesh }
     }
 
     fn is_fixed(&self) -> Vec<bool> {
@@ -55,7 +53,6 @@ impl Sample {
     fn balanced(&self) -> Balanced<'_, '_, impl Fn(usize, usize) -> f64 + Sync> {
         Balanced {
             mesh: &self.mesh,
-            around: &self.around,
             tension: &self.tension,
             displacement: &self.displacement,
             wedge_force: |k: usize, corner: usize| self.force[k][corner],
@@ -159,7 +156,7 @@ fn it_is_the_nearest_one() {
     let a = sample.mesh.kind().iter().position(|&kind| kind == VertexKind::Interior).unwrap();
     for circulation in [-0.1, 0.1] {
         let mut turned = outward.clone();
-        for &k in sample.around.of(a) {
+        for k in sample.mesh.around().triangles(a) {
             let corner = sample.mesh.triangles()[k].iter().position(|&b| b == a).unwrap();
             for half in 0..2 {
                 let fluxes = &mut turned[6 * k + 2 * corner + half];

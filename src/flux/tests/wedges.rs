@@ -3,7 +3,7 @@
 use super::samples::{cubic_problem, loads, meshes, solve};
 use crate::discretization::PairDiscretization;
 use crate::flux::{Reconstruction, Reconstructor, WedgeFluxes, discrete_flux};
-use crate::mesh::{Mesh, SubTriangulation, VertexKind, VertexTriangles};
+use crate::mesh::{Mesh, SubTriangulation, VertexKind};
 use crate::problem::ContactProblem;
 
 /// Rounding of squares of fluxes, relative to the largest one on the mesh.
@@ -17,15 +17,14 @@ fn differences(problem: &ContactProblem, mesh: &Mesh, kind: Reconstruction) -> [
     let sub = SubTriangulation::new(mesh).unwrap();
     let fluxes =
         Reconstructor::new(&d, &sub, loads(problem, mesh)).reconstruct(solution.displacement(), kind);
-    let around = VertexTriangles::new(mesh.points().len(), mesh.triangles());
-    let wedges = WedgeFluxes::new(&d, &around, solution.displacement(), solution.lambda());
+    let wedges = WedgeFluxes::new(&d, solution.displacement(), solution.lambda());
     let (mut distances, mut traces) = (Largest::default(), Largest::default());
     for (i, flux) in fluxes.iter().enumerate() {
         let q = discrete_flux(&d, i, &solution.displacement()[i]);
         for (k, &q) in q.iter().enumerate() {
             let expected = (6 * k..6 * (k + 1)).map(|t| flux.distance_sq(t, q)).sum::<f64>();
             distances.compare(wedges.distance_sq(k)[i], expected);
-            for corner in (0..3).filter(|&corner| is_boundary_edge(mesh, &around, k, corner)) {
+            for corner in (0..3).filter(|&corner| is_boundary_edge(mesh, k, corner)) {
                 let found = wedges.boundary_outward(i, k, corner);
                 // The first half edge of wedge 3 k + corner, and the second of the next one's.
                 let [first, last] = [2 * (3 * k + corner), 2 * (3 * k + (corner + 1) % 3) + 1];
@@ -37,10 +36,10 @@ fn differences(problem: &ContactProblem, mesh: &Mesh, kind: Reconstruction) -> [
     [distances.relative(), traces.relative()]
 }
 
-fn is_boundary_edge(mesh: &Mesh, around: &VertexTriangles, k: usize, corner: usize) -> bool {
+fn is_boundary_edge(mesh: &Mesh, k: usize, corner: usize) -> bool {
     let [a, b] = [0, 1].map(|j| mesh.triangles()[k][(corner + j) % 3]);
     mesh.kind()[a] == VertexKind::Boundary
-        && around.of(a).iter().filter(|&&t| mesh.triangles()[t].contains(&b)).count() == 1
+        && mesh.around().triangles(a).filter(|&t| mesh.triangles()[t].contains(&b)).count() == 1
 }
 
 #[derive(Default)]

@@ -13,6 +13,12 @@ pub enum MeshError {
     /// There is nothing to solve on.
     #[error("the mesh has no triangle: export the surface, not only its boundary")]
     Empty,
+    /// More triangles than can be counted.
+    #[error("the mesh has {} triangles, more than can be numbered: make it coarser", grouped(*triangles))]
+    TooLarge {
+        /// How many there are.
+        triangles: usize,
+    },
     /// A coordinate is NaN, infinite, or huge.
     #[error("vertex {vertex} has the coordinates ({:e}, {:e}): all must be finite and below {MAX_COORDINATE:e}; choose another unit of length", point[0], point[1])]
     Coordinates {
@@ -155,6 +161,7 @@ impl MeshError {
             | Self::Duplicate { corners, .. }
             | Self::TooSmall { corners, .. } => corners.to_vec(),
             Self::Empty
+            | Self::TooLarge { .. }
             | Self::Tiny { .. }
             | Self::Crossing { .. }
             | Self::Nested { .. }
@@ -196,7 +203,7 @@ impl MeshError {
                 Some(first)
             }
             Self::Nested { inner, .. } => Some(inner),
-            Self::Empty | Self::Coordinates { .. } | Self::NotGraded { .. } => None,
+            Self::Empty | Self::TooLarge { .. } | Self::Coordinates { .. } | Self::NotGraded { .. } => None,
         }
     }
 }

@@ -17,7 +17,14 @@ struct Piece {
 /// A piece is what is connected through vertices. Where the boundaries of two do not cross, one lies wholly in the other
 /// or wholly outside of it, so one vertex of each tells. Returns how many edges were looked at.
 pub(super) fn check_pieces(boundary: &Boundary, triangles: &[[usize; 3]]) -> Result<usize, MeshError> {
-    let piece_of = piece_of_vertices(boundary.points.len(), triangles);
+    // Each piece has a boundary: when that is in one part, so is the mesh.
+    let along_boundary = roots(boundary.points.len(), boundary.edges.iter().map(|edge| edge.ends));
+    let first = along_boundary[boundary.edges[0].ends[0]];
+    if boundary.edges.iter().all(|edge| along_boundary[edge.ends[0]] == first) {
+        return Ok(0);
+    }
+    let sides = triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c]]);
+    let piece_of = roots(boundary.points.len(), sides);
     let pieces = pieces(boundary, &piece_of);
     if pieces.len() == 1 {
         return Ok(0);
@@ -36,8 +43,8 @@ pub(super) fn check_pieces(boundary: &Boundary, triangles: &[[usize; 3]]) -> Res
 }
 
 /// The pieces, by their least vertices.
-fn pieces(boundary: &Boundary, piece_of: &[usize]) -> BTreeMap<usize, Piece> {
-    let mut pieces: BTreeMap<usize, Piece> = BTreeMap::new();
+fn pieces(boundary: &Boundary, piece_of: &[u32]) -> BTreeMap<u32, Piece> {
+    let mut pieces: BTreeMap<u32, Piece> = BTreeMap::new();
     for BoundaryEdge { ends: [a, _], triangle } in boundary.edges {
         let point = boundary.points[*a];
         let piece = pieces.entry(piece_of[*a]).or_insert(Piece { triangle: *triangle, rightmost: point });
@@ -51,11 +58,11 @@ fn pieces(boundary: &Boundary, piece_of: &[usize]) -> BTreeMap<usize, Piece> {
 /// The error that names a piece around `inner`.
 fn nested_in(
     boundary: &Boundary,
-    piece_of: &[usize],
-    pieces: &BTreeMap<usize, Piece>,
+    piece_of: &[u32],
+    pieces: &BTreeMap<u32, Piece>,
     inner: &Piece,
 ) -> MeshError {
-    let mut turns: BTreeMap<usize, i32> = BTreeMap::new();
+    let mut turns: BTreeMap<u32, i32> = BTreeMap::new();
     for edge in boundary.edges {
         let mut winding = [Winding { point: inner.rightmost, turns: 0 }];
         wind(boundary.points, &[*edge], &mut winding);
@@ -65,29 +72,29 @@ fn nested_in(
     MeshError::Nested { inner: inner.triangle, outer: around.unwrap_or(inner.triangle) }
 }
 
-/// For each vertex the least vertex of its piece.
-fn piece_of_vertices(vertices: usize, triangles: &[[usize; 3]]) -> Vec<usize> {
-    let mut parent: Vec<usize> = (0..vertices).collect();
-    let root = |parent: &mut [usize], mut a: usize| {
-        while parent[a] != a {
-            parent[a] = parent[parent[a]];
-            a = parent[a];
+/// For each vertex the least of those that edges connect it to.
+fn roots(vertices: usize, edges: impl Iterator<Item = [usize; 2]>) -> Vec<u32> {
+    let mut parent: Vec<u32> = (0..vertices as u32).collect();
+    let root = |parent: &mut [u32], mut a: u32| {
+        while parent[a as usize] != a {
+            parent[a as usize] = parent[parent[a as usize] as usize];
+            a = parent[a as usize];
         }
         a
     };
-    for &[a, b, c] in triangles {
-        for (a, b) in [(a, b), (b, c)] {
-            let (p, q) = (root(&mut parent, a), root(&mut parent, b));
-            parent[p.max(q)] = p.min(q);
-        }
+    for ends in edges {
+        let [p, q] = ends.map(|a| root(&mut parent, a as u32));
+        parent[p.max(q) as usize] = p.min(q);
     }
-    (0..vertices).map(|a| root(&mut parent, a)).collect()
+    (0..vertices as u32).map(|a| root(&mut parent, a)).collect()
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::around::Around;
     use super::*;
     use crate::mesh::samples::square;
+    use crate::mesh::topology::VertexTriangles;
 
     /// `n x n` cells, every second of which in both directions is an island in a hole of the others.
     fn islands(n: usize) -> (Vec<[f64; 2]>, Vec<[usize; 3]>) {
@@ -112,7 +119,8 @@ mod tests {
 
     /// What `check_pieces` says of a mesh, and the number of its boundary edges.
     fn checked((points, triangles): &(Vec<[f64; 2]>, Vec<[usize; 3]>)) -> (Result<usize, MeshError>, usize) {
-        let edges = super::super::boundary_edges(points.len(), triangles).unwrap();
+        let around = VertexTriangles::new(points.len(), triangles);
+        let edges = Around { points, triangles, around: &around }.boundary_edges().unwrap();
         (check_pieces(&Boundary::new(points, &edges), triangles), edges.len())
     }
 

@@ -1,7 +1,11 @@
 //! Shape regularity of a mesh.
 
+use std::ops::Range;
+
 use crate::geometry::{distance_sq, twice_signed_area};
 use crate::mesh::Mesh;
+use crate::parallel::blocks;
+use crate::parallel::prelude::*;
 
 /// How well the triangles are shaped: the constants of the estimates depend on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,40 +23,98 @@ pub struct MeshQuality {
 }
 
 impl Mesh {
-    /// Measures all triangles. Linear time.
+    /// Measures all triangles. Linear time, in parallel.
     pub fn quality(&self) -> MeshQuality {
-        let mut quality = MeshQuality {
-            min_angle: 180.0,
-            max_angle: 0.0,
-            h_min: f64::INFINITY,
-            h_max: 0.0,
-            shape_regularity: 0.0,
+        let of_block = |block: Range<usize>| {
+            block.fold(Extremes::default(), |extremes, t| extremes.with(self.corners(t)))
         };
-        for t in 0..self.triangles().len() {
-            let corners = self.corners(t);
-            let twice_area = twice_signed_area(corners);
-            let lengths = [1, 2, 0].map(|i| distance_sq(corners[i], corners[(i + 1) % 3]).sqrt());
-            let perimeter: f64 = lengths.iter().sum();
-            let longest = lengths.into_iter().fold(0.0, f64::max);
-            for (angle, length) in angles(corners).map(f64::to_degrees).into_iter().zip(lengths) {
-                quality.min_angle = quality.min_angle.min(angle);
-                quality.max_angle = quality.max_angle.max(angle);
-                quality.h_min = quality.h_min.min(length);
-            }
-            quality.h_max = quality.h_max.max(longest);
-            // The inscribed circle has the diameter rho = 4 area / perimeter.
-            quality.shape_regularity = quality.shape_regularity.max(longest * perimeter / (2.0 * twice_area));
+        let blocks: Vec<Extremes> = blocks(self.triangles().len()).into_par_iter().map(of_block).collect();
+        blocks.into_iter().fold(Extremes::default(), Extremes::and).quality()
+    }
+}
+
+/// What some triangles have at most and at least.
+#[derive(Clone, Copy)]
+struct Extremes {
+    /// Sine and cosine, up to a common factor, of the smallest and the largest angle.
+    smallest: [f64; 2],
+    largest: [f64; 2],
+    shortest_sq: f64,
+    longest_sq: f64,
+    shape_regularity: f64,
+}
+
+impl Default for Extremes {
+    fn default() -> Self {
+        Self {
+            smallest: [0.0, -1.0],
+            largest: [0.0, 1.0],
+            shortest_sq: f64::INFINITY,
+            longest_sq: 0.0,
+            shape_regularity: 0.0,
         }
-        quality
+    }
+}
+
+/// Whether an angle is smaller than another, both from zero to half a turn, by their sines and cosines up to positive factors.
+fn is_smaller([sin, cos]: [f64; 2], [other_sin, other_cos]: [f64; 2]) -> bool {
+    // The sine of the difference.
+    sin * other_cos < cos * other_sin
+}
+
+impl Extremes {
+    fn with(self, corners: [[f64; 2]; 3]) -> Self {
+        let twice_area = twice_signed_area(corners);
+        let lengths_sq = [1, 2, 0].map(|i| distance_sq(corners[i], corners[(i + 1) % 3]));
+        let lengths = lengths_sq.map(f64::sqrt);
+        let longest = lengths.into_iter().fold(0.0, f64::max);
+        let perimeter: f64 = lengths.iter().sum();
+        let angles = corner_products(corners).map(|product| [twice_area, product]);
+        angles.into_iter().zip(lengths_sq).fold(
+            // The inscribed circle has the diameter rho = 4 area / perimeter.
+            Self {
+                shape_regularity: self.shape_regularity.max(longest * perimeter / (2.0 * twice_area)),
+                ..self
+            },
+            |extremes, (angle, length_sq)| Self {
+                smallest: if is_smaller(angle, extremes.smallest) { angle } else { extremes.smallest },
+                largest: if is_smaller(extremes.largest, angle) { angle } else { extremes.largest },
+                shortest_sq: extremes.shortest_sq.min(length_sq),
+                longest_sq: extremes.longest_sq.max(length_sq),
+                ..extremes
+            },
+        )
+    }
+
+    fn and(self, other: Self) -> Self {
+        Self {
+            smallest: if is_smaller(other.smallest, self.smallest) { other.smallest } else { self.smallest },
+            largest: if is_smaller(self.largest, other.largest) { other.largest } else { self.largest },
+            shortest_sq: self.shortest_sq.min(other.shortest_sq),
+            longest_sq: self.longest_sq.max(other.longest_sq),
+            shape_regularity: self.shape_regularity.max(other.shape_regularity),
+        }
+    }
+
+    fn quality(self) -> MeshQuality {
+        let [min_angle, max_angle] =
+            [self.smallest, self.largest].map(|[sin, cos]| sin.atan2(cos).to_degrees());
+        let [h_min, h_max] = [self.shortest_sq, self.longest_sq].map(f64::sqrt);
+        MeshQuality { min_angle, max_angle, h_min, h_max, shape_regularity: self.shape_regularity }
     }
 }
 
 /// The angles at the corners of a triangle, radians.
 pub(in crate::mesh) fn angles(corners: [[f64; 2]; 3]) -> [f64; 3] {
     let twice_area = twice_signed_area(corners);
+    corner_products(corners).map(|product| twice_area.atan2(product))
+}
+
+/// The scalar products of the two edges from each corner.
+fn corner_products(corners: [[f64; 2]; 3]) -> [f64; 3] {
     [0, 1, 2].map(|i| {
         let [p, q, r] = [corners[i], corners[(i + 1) % 3], corners[(i + 2) % 3]];
-        twice_area.atan2((q[0] - p[0]) * (r[0] - p[0]) + (q[1] - p[1]) * (r[1] - p[1]))
+        (q[0] - p[0]) * (r[0] - p[0]) + (q[1] - p[1]) * (r[1] - p[1])
     })
 }
 

@@ -3,7 +3,7 @@
 #[cfg(test)]
 mod tests;
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use super::circle::Circle;
 use crate::geometry::distance_sq;
@@ -116,7 +116,7 @@ impl Bisection {
         };
         let groups = self.mesh.groups.inherited(children, self.mesh.points.len(), &parents);
         let views = self.mesh.views.inherited(origin.iter().copied(), self.mesh.points.len(), &parents);
-        let mesh = Mesh { points, triangles, kind, ancestry, groups, views };
+        let mesh = Mesh { points, triangles, kind, ancestry, groups, views, around: OnceLock::new() };
         // On a polygon the new mesh covers exactly what the old one did; a moved boundary may meet another one.
         self.mesh = Arc::new(if self.circle.is_some() { mesh.checked()? } else { mesh });
         self.refinement_edge = refinement_edge;
@@ -128,10 +128,10 @@ impl Bisection {
     /// refinement edge. Each edge is halved once at most, so this ends, whatever the refinement edges are.
     fn closure(&self, edges: &Edges, marked: &[usize]) -> Vec<usize> {
         let mut halved = vec![false; edges.ends.len()];
-        let mut open: Vec<usize> = marked.iter().flat_map(|&t| edges.of_triangle[t]).collect();
+        let mut open: Vec<usize> = marked.iter().flat_map(|&t| edges.of_triangle(t)).collect();
         while let Some(edge) = open.pop() {
             if !std::mem::replace(&mut halved[edge], true) {
-                open.extend(edges.triangles[edge].map(|t| edges.of_triangle[t][self.start(t)]));
+                open.extend(edges.triangles(edge).map(|t| edges.of_triangle(t)[self.start(t)]));
             }
         }
         (0..halved.len()).filter(|&edge| halved[edge]).collect()
@@ -167,7 +167,7 @@ impl Bisection {
         for (t, corners) in self.mesh.triangles.iter().enumerate() {
             let from_start = [0, 1, 2].map(|i| (self.start(t) + i) % 3);
             let before = triangles.len();
-            match from_start.map(|i| midpoint[edges.of_triangle[t][i]]) {
+            match from_start.map(|i| midpoint[edges.of_triangle(t)[i]]) {
                 [None, ..] => {
                     triangles.push(*corners);
                     refinement_edge.push(self.refinement_edge[t]);

@@ -1,8 +1,11 @@
 //! Uniform refinement: each triangle into four, by the midpoints of its edges.
 
+use std::sync::OnceLock;
+
 use crate::mesh::check::Smallest;
 use crate::mesh::topology::Midpoints;
 use crate::mesh::{Mesh, MeshError, VertexKind};
+use crate::parallel::prelude::*;
 
 /// A refined mesh and where its vertices come from.
 #[derive(Debug, Clone)]
@@ -25,23 +28,26 @@ impl Mesh {
     pub fn refine(&self) -> Result<Refinement, MeshError> {
         let midpoints = Midpoints::new(self);
         let points = [self.points.as_slice(), &midpoints.points].concat();
-        let kind_of_midpoint =
-            |&boundary: &bool| if boundary { VertexKind::Boundary } else { VertexKind::Interior };
+        let kind_of_midpoint = |edge: usize| match midpoints.edges.on_boundary(edge) {
+            true => VertexKind::Boundary,
+            false => VertexKind::Interior,
+        };
         let kind =
-            self.kind.iter().copied().chain(midpoints.on_boundary.iter().map(kind_of_midpoint)).collect();
-        let triangles = self
-            .triangles
-            .iter()
-            .zip(&midpoints.of_triangle)
-            .flat_map(|(&[a, b, c], &[ab, bc, ca])| [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]])
-            .collect();
-        let ancestry = self.ancestry_of_refinement(&midpoints.ends);
-        let groups = self.groups.inherited(|t| 4 * t..4 * t + 4, self.points.len(), &midpoints.ends);
+            self.kind.iter().copied().chain((0..midpoints.points.len()).map(kind_of_midpoint)).collect();
+        let quarters = |t: usize| {
+            let ([a, b, c], [ab, bc, ca]) = (self.triangles[t], midpoints.of_triangle(t));
+            [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+        };
+        let triangles: Vec<_> = (0..self.triangles.len()).into_par_iter().map(quarters).collect();
+        let triangles = triangles.into_flattened();
+        let parents = midpoints.edges.ends;
+        let ancestry = self.ancestry_of_refinement(&parents);
+        let groups = self.groups.inherited(|t| 4 * t..4 * t + 4, self.points.len(), &parents);
         let origins = (0..4 * self.triangles.len()).map(|t| t / 4);
-        let views = self.views.inherited(origins, self.points.len(), &midpoints.ends);
-        let mesh = Mesh { points, triangles, kind, ancestry, groups, views };
+        let views = self.views.inherited(origins, self.points.len(), &parents);
+        let mesh = Mesh { points, triangles, kind, ancestry, groups, views, around: OnceLock::new() };
         self.check_parts(&mesh)?;
-        Ok(Refinement { mesh, parents: midpoints.ends })
+        Ok(Refinement { mesh, parents })
     }
 
     /// Demands that the parts of all triangles, four each, are large enough.
@@ -50,10 +56,13 @@ impl Mesh {
     /// [`MeshError::TooSmall`], naming the triangle.
     pub(super) fn check_parts(&self, fine: &Self) -> Result<(), MeshError> {
         let smallest = Smallest::of(self);
-        match (0..fine.triangles.len()).find(|&part| !smallest.allows(fine.corners(part))) {
-            Some(part) => Err(self.too_small(part / 4)),
-            None => Ok(()),
+        let is_allowed = |part: &usize| smallest.allows(fine.corners(*part));
+        let parts = 0..fine.triangles.len();
+        if parts.clone().into_par_iter().all(|part| is_allowed(&part)) {
+            return Ok(());
         }
+        let part = parts.into_iter().find(|part| !is_allowed(part)).expect("one is too small");
+        Err(self.too_small(part / 4))
     }
 }
 

@@ -11,62 +11,91 @@ pub(crate) fn corner_of(triangle: [usize; 3], vertex: usize) -> usize {
 }
 
 /// The triangles `T_a` around each vertex `a`, in compressed rows, in increasing order.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct VertexTriangles {
-    start: Vec<usize>,
-    triangles: Vec<usize>,
+    start: Vec<u32>,
+    triangles: Vec<u32>,
 }
 
 impl VertexTriangles {
     /// Collects the rows by counting: linear in the number of triangles.
     pub(crate) fn new(vertices: usize, triangles: &[[usize; 3]]) -> Self {
-        let corners = || triangles.iter().enumerate().flat_map(|(t, corners)| corners.map(|a| (a, t)));
+        let corners = || triangles.iter().zip(0u32..).flat_map(|(corners, t)| corners.map(|a| (a, t)));
         let (start, triangles) = group_by_key(vertices, corners);
         Self { start, triangles }
     }
 
     /// Where the row of vertex `a` lies among all rows.
     pub(crate) fn row(&self, a: usize) -> Range<usize> {
-        self.start[a]..self.start[a + 1]
+        self.start[a] as usize..self.start[a + 1] as usize
     }
 
     /// The triangles that share vertex `a`.
-    pub(crate) fn of(&self, a: usize) -> &[usize] {
+    pub(crate) fn of(&self, a: usize) -> &[u32] {
         &self.triangles[self.row(a)]
+    }
+
+    /// Likewise, as numbers to index with.
+    pub(crate) fn triangles(&self, a: usize) -> impl ExactSizeIterator<Item = usize> + Clone {
+        self.of(a).iter().map(|&t| t as usize)
+    }
+
+    /// Where triangle `t`, one of those around vertex `a`, lies among all rows.
+    pub(crate) fn place(&self, a: usize, t: usize) -> usize {
+        let place = self.of(a).binary_search(&(t as u32));
+        self.row(a).start + place.expect("a triangle is around its corners")
     }
 }
 
 /// An edge as one of its triangles sees it, filed under its lower end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub(crate) struct HalfEdge {
+    end: u32,
+    /// The number of the triangle; the highest bit says whether the edge is reversed.
+    side: u32,
+}
+
+impl HalfEdge {
+    const REVERSED: u32 = 1 << 31;
+
+    fn new(end: usize, is_reversed: bool, triangle: u32) -> Self {
+        Self { end: end as u32, side: triangle | if is_reversed { Self::REVERSED } else { 0 } }
+    }
+
     /// The upper end.
-    pub(crate) end: usize,
+    pub(crate) fn end(self) -> usize {
+        self.end as usize
+    }
+
     /// Whether the triangle, run through counterclockwise, passes from the upper to the lower end.
-    pub(crate) reversed: bool,
+    pub(crate) fn is_reversed(self) -> bool {
+        self.side & Self::REVERSED != 0
+    }
+
     /// The triangle.
-    pub(crate) triangle: usize,
+    pub(crate) fn triangle(self) -> usize {
+        (self.side & !Self::REVERSED) as usize
+    }
 }
 
 /// All half edges, filed under their lower ends, sorted there: those of one edge are neighbours.
 #[derive(Debug)]
 pub(crate) struct HalfEdges {
-    start: Vec<usize>,
+    start: Vec<u32>,
     half_edges: Vec<HalfEdge>,
 }
 
 impl HalfEdges {
     pub(crate) fn new(vertices: usize, triangles: &[[usize; 3]]) -> Self {
         let sides = || {
-            triangles.iter().enumerate().flat_map(|(triangle, &[a, b, c])| {
-                [(a, b), (b, c), (c, a)].map(|(from, to)| {
-                    let reversed = from > to;
-                    (from.min(to), HalfEdge { end: from.max(to), reversed, triangle })
-                })
+            triangles.iter().zip(0..).flat_map(|(&[a, b, c], triangle)| {
+                [(a, b), (b, c), (c, a)]
+                    .map(|(from, to)| (from.min(to), HalfEdge::new(from.max(to), from > to, triangle)))
             })
         };
         let (start, mut half_edges) = group_by_key(vertices, sides);
         for row in start.windows(2) {
-            half_edges[row[0]..row[1]].sort_unstable();
+            half_edges[row[0] as usize..row[1] as usize].sort_unstable();
         }
         Self { start, half_edges }
     }
@@ -74,9 +103,9 @@ impl HalfEdges {
     /// The edges of the mesh: lower end, upper end, and the triangles that see it. In increasing order of the ends.
     pub(crate) fn edges(&self) -> impl Iterator<Item = (usize, usize, &[HalfEdge])> {
         (0..self.start.len() - 1).flat_map(move |lower| {
-            self.half_edges[self.start[lower]..self.start[lower + 1]]
+            self.half_edges[self.start[lower] as usize..self.start[lower + 1] as usize]
                 .chunk_by(|a, b| a.end == b.end)
-                .map(move |sides| (lower, sides[0].end, sides))
+                .map(move |sides| (lower, sides[0].end(), sides))
         })
     }
 }
@@ -85,8 +114,8 @@ impl HalfEdges {
 fn group_by_key<V: Copy + Default, I: Iterator<Item = (usize, V)>>(
     keys: usize,
     items: impl Fn() -> I,
-) -> (Vec<usize>, Vec<V>) {
-    let mut start = vec![0; keys + 1];
+) -> (Vec<u32>, Vec<V>) {
+    let mut start = vec![0u32; keys + 1];
     for (key, _) in items() {
         start[key + 1] += 1;
     }
@@ -94,9 +123,9 @@ fn group_by_key<V: Copy + Default, I: Iterator<Item = (usize, V)>>(
         start[key + 1] += start[key];
     }
     let mut next = start.clone();
-    let mut values = vec![V::default(); start[keys]];
+    let mut values = vec![V::default(); start[keys] as usize];
     for (key, value) in items() {
-        values[next[key]] = value;
+        values[next[key] as usize] = value;
         next[key] += 1;
     }
     (start, values)
@@ -114,7 +143,7 @@ mod tests {
         for a in 0..mesh.points().len() {
             let found: Vec<usize> =
                 (0..mesh.triangles().len()).filter(|&t| mesh.triangles()[t].contains(&a)).collect();
-            assert_eq!(around.of(a), found);
+            assert!(around.triangles(a).eq(found.iter().copied()));
             assert!(!found.is_empty());
         }
         assert!(around.of(mesh.points().len()).is_empty(), "a vertex in no triangle");
@@ -129,7 +158,7 @@ mod tests {
     #[test]
     fn edges_of_two_triangles() {
         let half_edges = HalfEdges::new(5, &[[0, 1, 2], [0, 2, 4]]);
-        let side = |end, reversed, triangle| HalfEdge { end, reversed, triangle };
+        let side = HalfEdge::new;
         let found: Vec<_> = half_edges.edges().map(|(a, b, sides)| (a, b, sides.to_vec())).collect();
         let expected = [
             (0, 1, vec![side(1, false, 0)]),

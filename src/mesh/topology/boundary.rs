@@ -31,7 +31,7 @@ mod tests {
             let directed = |(lower, upper, reversed)| if reversed { [upper, lower] } else { [lower, upper] };
             let alone = half_edges.edges().filter(|(_, _, sides)| sides.len() == 1);
             let expected: Vec<[usize; 2]> =
-                alone.map(|(lower, upper, sides)| directed((lower, upper, sides[0].reversed))).collect();
+                alone.map(|(lower, upper, sides)| directed((lower, upper, sides[0].is_reversed()))).collect();
             assert_eq!(boundary_edges(&mesh), expected);
             assert!(!expected.is_empty());
         }

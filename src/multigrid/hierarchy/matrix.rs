@@ -1,8 +1,7 @@
 //! Symmetric matrices in compact rows.
 
-use sprs::CsMat;
-
 use super::ordering::inverse;
+use crate::fem::{StiffnessMatrix, row_of};
 use crate::parallel::BLOCK;
 use crate::parallel::prelude::*;
 
@@ -206,7 +205,7 @@ pub(crate) fn reordered(
 }
 
 /// `K` with empty rows for vertices that are not `free`, the vertices in this order.
-pub(crate) fn compact_stiffness(k: &CsMat<f64>, free: &[bool], order: &[u32]) -> (Pattern, Values) {
+pub(crate) fn compact_stiffness(k: &StiffnessMatrix, free: &[bool], order: &[u32]) -> (Pattern, Values) {
     let position = inverse(order);
     let block = |block: &[u32]| {
         let mut rows = Rows::with_capacity(BLOCK);
@@ -214,8 +213,7 @@ pub(crate) fn compact_stiffness(k: &CsMat<f64>, free: &[bool], order: &[u32]) ->
             let a = a as usize;
             let mut diagonal = 0.0;
             if free[a] {
-                let row = k.outer_view(a).expect("a vertex has a row");
-                for (b, &value) in row.iter() {
+                for (b, value) in row_of(k, a) {
                     if b == a {
                         diagonal = value;
                     } else if value != 0.0 {

@@ -1,8 +1,7 @@
 //! Numberings in which neighbours are near: a smoother that runs through the memory once needs them.
 
-use sprs::CsMat;
-
 use super::genealogy::{Genealogy, NONE};
+use crate::fem::StiffnessMatrix;
 use crate::parallel::prelude::*;
 
 /// A numbering is left as it is when no neighbours are further apart than this many times the side of a square mesh.
@@ -14,7 +13,7 @@ pub(super) fn is_banded(vertices: usize, bandwidth: usize) -> bool {
 }
 
 /// The vertices of a mesh in a banded order: layer by layer on the coarsest mesh known, and all others between their parents.
-pub(super) fn banded_order(k: &CsMat<f64>, genealogy: &Genealogy) -> Vec<u32> {
+pub(super) fn banded_order(k: &StiffnessMatrix, genealogy: &Genealogy) -> Vec<u32> {
     let roots = genealogy.roots();
     let layers = layers(roots.len(), &edges_of_roots(k, genealogy));
     if roots.len() == k.rows() {
@@ -36,7 +35,7 @@ pub(super) fn banded_order(k: &CsMat<f64>, genealogy: &Genealogy) -> Vec<u32> {
 
 /// The edges of the coarsest mesh known, by the numbers that vertices have there: those that are still edges, and those with a
 /// midpoint.
-fn edges_of_roots(k: &CsMat<f64>, genealogy: &Genealogy) -> Vec<[u32; 2]> {
+fn edges_of_roots(k: &StiffnessMatrix, genealogy: &Genealogy) -> Vec<[u32; 2]> {
     let mut number = vec![NONE; k.rows()];
     for (root, &a) in (0..).zip(genealogy.roots()) {
         number[a as usize] = root;
@@ -44,7 +43,7 @@ fn edges_of_roots(k: &CsMat<f64>, genealogy: &Genealogy) -> Vec<[u32; 2]> {
     let edge = |a: u32, b: u32| [number[a as usize], number[b as usize]];
     let entries = genealogy.roots().iter().flat_map(|&a| {
         let row = k.indptr().outer_inds_sz(a as usize);
-        k.indices()[row].iter().map(move |&b| [a, b as u32]).filter(|[a, b]| a < b)
+        k.indices()[row].iter().map(move |&b| [a, b]).filter(|[a, b]| a < b)
     });
     let parents = (0..k.rows() as u32).map(|a| genealogy.parents(a));
     let ends = parents.filter_map(|parents| <[u32; 2]>::try_from(parents.vertices()).ok());

@@ -87,7 +87,7 @@ fn refined_meshes_are_numbered_so_that_neighbours_are_near() {
     let side = (mesh.points().len() as f64).sqrt();
     assert!(windows(&hierarchy_of(&mesh)) as f64 > side / NEAR_WINDOWS, "many windows");
     let k = stiffness(&mesh);
-    let bandwidth = k.iter().map(|(_, (a, b))| a.abs_diff(b)).max().unwrap();
+    let bandwidth = k.iter().map(|(_, (a, b))| a.abs_diff(b) as usize).max().unwrap();
     assert!(!is_banded(mesh.points().len(), bandwidth), "as it is, they are not near");
 }
 

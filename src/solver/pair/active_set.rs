@@ -72,7 +72,7 @@ pub(in crate::solver) fn settle(
 }
 
 /// The obstacle half on the unknowns of the discretization.
-fn gap_half<'d>(d: &'d PairDiscretization, decoupled: &Decoupled) -> Result<Obstacle<'d>, NotFactored> {
+fn gap_half(d: &PairDiscretization, decoupled: &Decoupled) -> Result<Obstacle, NotFactored> {
     let load = lifted(d, |a| decoupled.gap_load(a), |b| d.height()[b]);
     let terms = d.interior().iter().map(|&a| decoupled.gap_load_terms(a)).collect();
     Obstacle::new(d.interior_stiffness(), load, terms, d.scales().displacement)

@@ -2,8 +2,9 @@
 
 use std::hint::black_box;
 
-use sprs::CsMat;
 use web_time::Instant;
+
+use crate::fem::StiffnessMatrix;
 
 /// The least number of samples, of which the fastest counts.
 const SAMPLES: usize = 10;
@@ -26,14 +27,10 @@ pub struct CsrProduct {
 
 impl CsrProduct {
     /// A copy of a symmetric matrix `K` with compressed rows.
-    ///
-    /// # Panics
-    /// When it has more than 2^32 entries.
-    pub fn new(matrix: &CsMat<f64>) -> Self {
-        let small = |index: &usize| u32::try_from(*index).expect("a mesh that fits into memory is smaller");
+    pub fn new(matrix: &StiffnessMatrix) -> Self {
         Self {
-            row_starts: matrix.indptr().raw_storage().iter().map(small).collect(),
-            columns: matrix.indices().iter().map(small).collect(),
+            row_starts: matrix.indptr().raw_storage().to_vec(),
+            columns: matrix.indices().to_vec(),
             values: matrix.data().to_vec(),
             size: matrix.cols(),
         }
@@ -88,7 +85,8 @@ mod tests {
 
     #[test]
     fn the_product_is_that_of_the_matrix() {
-        let matrix = CsMat::new((3, 3), vec![0, 2, 2, 4], vec![0, 2, 0, 1], vec![1.0, 2.0, 3.0, 4.0]);
+        let matrix =
+            StiffnessMatrix::new((3, 3), vec![0, 2, 2, 4], vec![0, 2, 0, 1], vec![1.0, 2.0, 3.0, 4.0]);
         let product = CsrProduct::new(&matrix);
         let mut y = vec![f64::NAN; 3];
         product.apply(&[1.0, 10.0, 100.0], &mut y);

@@ -38,7 +38,7 @@ fn distance_and_bound(hostile: &Hostile, factor: f64) -> Result<[f64; 2], String
 
 /// `v' K v`, with a change of each entry of `K`.
 fn energy(d: &PairDiscretization, v: &[f64], entry: impl Fn(f64) -> f64) -> f64 {
-    d.stiffness().iter().map(|(&k, (a, b))| entry(k) * v[a] * v[b]).sum()
+    d.stiffness().iter().map(|(&k, (a, b))| entry(k) * v[a as usize] * v[b as usize]).sum()
 }
 
 #[test]

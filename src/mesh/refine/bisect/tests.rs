@@ -397,9 +397,9 @@ fn triangles_agree_about_the_longer_edge() {
         let edges = Edges::new(bisection.mesh());
         let mut t = start;
         (0..bisection.mesh().triangles().len()).any(|_| {
-            let edge = edges.of_triangle[t][bisection.start(t)];
-            let next = edges.triangles[edge].into_iter().find(|&other| other != t).unwrap_or(t);
-            let agree = next == t || edges.of_triangle[next][bisection.start(next)] == edge;
+            let edge = edges.of_triangle(t)[bisection.start(t)];
+            let next = edges.triangles(edge).into_iter().find(|&other| other != t).unwrap_or(t);
+            let agree = next == t || edges.of_triangle(next)[bisection.start(next)] == edge;
             t = next;
             agree
         })

@@ -31,7 +31,7 @@ pub(super) fn guess_from_coarser_levels(
         let (k, rows) = free_part(level);
         let b: Vec<f64> = rows.iter().map(|&i| loads[l][i]).collect();
         let active = rows.iter().map(|&i| touches[i]).collect();
-        let mut half = Obstacle::new(&k, b.clone(), b, d.scales().displacement)?;
+        let mut half = Obstacle::new(k, b.clone(), b, d.scales().displacement)?;
         let (gap, _, repairs) = half.settle_roughly(active, limits)?;
         factorizations.push(repairs + 1);
         let mut w = heights[l].clone();

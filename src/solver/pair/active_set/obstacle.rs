@@ -8,8 +8,8 @@ use crate::qp::{Limits, Status};
 use crate::solver::repair::{CAUTION, ROUNDING, Repair, SLIGHT};
 
 /// `K w - y = b`, `w >= 0`, `y >= 0`, `w'y = 0`.
-pub(in crate::solver::pair) struct Obstacle<'k> {
-    k: &'k CsMat<f64>,
+pub(in crate::solver::pair) struct Obstacle {
+    k: CsMat<f64>,
     b: Vec<f64>,
     /// The size of the terms that cancel in `b`.
     b_terms: Vec<f64>,
@@ -24,15 +24,16 @@ pub(in crate::solver::pair) struct Gap {
     pub(in crate::solver::pair) y: Vec<f64>,
 }
 
-impl<'k> Obstacle<'k> {
+impl Obstacle {
     /// `scale` is the typical size of `w`.
     pub(in crate::solver::pair) fn new(
-        k: &'k CsMat<f64>,
+        k: CsMat<f64>,
         b: Vec<f64>,
         b_terms: Vec<f64>,
         scale: f64,
     ) -> Result<Self, NotFactored> {
-        Ok(Self { k, b, b_terms, slight: SLIGHT * scale, cholesky: Cholesky::symbolic(k.clone())? })
+        let cholesky = Cholesky::symbolic(k.clone())?;
+        Ok(Self { k, b, b_terms, slight: SLIGHT * scale, cholesky })
     }
 
     /// Repairs a contact set until it is consistent: vertices that pull leave it, vertices that have passed through each other

@@ -36,8 +36,8 @@ fn dense(entries: &[[f64; 3]; 3]) -> CsMat<f64> {
     triplets.to_csr()
 }
 
-fn obstacle<'k>(k: &'k CsMat<f64>, b: &[f64]) -> Obstacle<'k> {
-    Obstacle::new(k, b.to_vec(), b.to_vec(), 1.0).unwrap()
+fn obstacle(k: &CsMat<f64>, b: &[f64]) -> Obstacle {
+    Obstacle::new(k.clone(), b.to_vec(), b.to_vec(), 1.0).unwrap()
 }
 
 /// Whether all repairs at once come back to a contact set.
