@@ -1,9 +1,12 @@
 //! How strongly a load acts, in the norm that is dual to the energy's.
 
 use std::f64::consts::SQRT_2;
+use std::ops::Range;
 
 use crate::geometry::{friedrichs, poincare};
 use crate::mesh::Mesh;
+use crate::parallel::blocks;
+use crate::parallel::prelude::*;
 
 /// Squares on the finest level at most, about.
 const SQUARES: usize = 1 << 16;
@@ -27,13 +30,18 @@ pub(super) fn dual_norm(mesh: &Mesh, values: &[f64]) -> f64 {
         return 0.0;
     }
     let mut level = Squares::new(mesh, values.len());
-    let mut within_sq = 0.0;
-    for (t, value) in values.iter().enumerate() {
-        let mass = mesh.triangle_area(t) * value;
-        level.add(mesh.corners(t), mass);
-        within_sq += poincare(SQRT_2 * level.side + mesh.diameter_sq(t).sqrt()).powi(2) * mass * value;
+    let on_triangle = |t: usize| {
+        let mass = mesh.triangle_area(t) * values[t];
+        let within = poincare(SQRT_2 * level.side + mesh.diameter_sq(t).sqrt()).powi(2) * mass * values[t];
+        (level.with_barycentre_of(mesh.corners(t)), mass, within)
+    };
+    let of_block = |block: Range<usize>| block.map(on_triangle).collect();
+    let blocks: Vec<Vec<_>> = blocks(values.len()).into_par_iter().map(of_block).collect();
+    let mut norm_sq = 0.0;
+    for (square, mass, within) in blocks.into_iter().flatten() {
+        level.masses[square] += mass;
+        norm_sq += within;
     }
-    let mut norm_sq = within_sq;
     let mut square = level.square();
     while level.masses.len() > 1 {
         level = level.coarser();
@@ -65,12 +73,13 @@ impl Squares {
         Self { origin: lower, side, counts, masses: vec![0.0; counts[0] * counts[1]] }
     }
 
-    fn add(&mut self, corners: [[f64; 2]; 3], mass: f64) {
+    /// The number of the square with the barycentre of a triangle.
+    fn with_barycentre_of(&self, corners: [[f64; 2]; 3]) -> usize {
         let [column, row] = [0, 1].map(|axis| {
             let barycentre = corners.iter().map(|corner| corner[axis]).sum::<f64>() / 3.0;
             (((barycentre - self.origin[axis]) / self.side) as usize).min(self.counts[axis] - 1)
         });
-        self.masses[row * self.counts[0] + column] += mass;
+        row * self.counts[0] + column
     }
 
     /// The square of the norm of the means.

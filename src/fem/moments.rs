@@ -8,8 +8,8 @@ use super::quadrature::DEGREE_4;
 use super::second_rule::SecondRule;
 use crate::geometry::{poincare, twice_signed_area};
 use crate::mesh::{Mesh, corner_of};
-use crate::parallel::blocks_of;
 use crate::parallel::prelude::*;
+use crate::parallel::{BLOCK, blocks_of};
 use crate::problem::{EvaluationError, Function};
 
 /// Triangles whose quadrature points are evaluated together.
@@ -51,9 +51,7 @@ impl LoadMoments {
         let second_rule = SecondRule::new(areas.iter().sum());
         // Collected before errors are looked for, so that the first in the order of the triangles is named.
         let blocks: Vec<_> = blocks().map(|block| on_block(mesh, block, f, &second_rule)).collect();
-        let mut seen = SeenLoad::with_capacity(triangles);
-        blocks.into_iter().try_for_each(|block| block.map(|block| seen.extend(block)))?;
-        Ok(seen.into_moments(mesh))
+        Ok(SeenLoad::of_batches(blocks.into_iter().collect::<Result<_, _>>()?).into_moments(mesh))
     }
 
     /// Of a load that is given by parts: the triangles of each, and what is seen of it there. Together they are all triangles.
@@ -110,7 +108,7 @@ impl LoadMoments {
     pub(crate) fn vector(&self, mesh: &Mesh) -> Vec<f64> {
         let on_element = |t: usize, a: usize| self.on(mesh, t).integrals[corner_of(mesh.triangles()[t], a)];
         let at = |a: usize| mesh.around().triangles(a).map(|t| on_element(t, a)).sum();
-        (0..mesh.points().len()).into_par_iter().map(at).collect()
+        (0..mesh.points().len()).into_par_iter().with_min_len(BLOCK).map(at).collect()
     }
 }
 
@@ -227,10 +225,15 @@ impl SeenLoad {
         Self { means: vec![0.0; moments.len()], moments, excess_sq: 0.0 }
     }
 
-    fn extend(&mut self, further: Self) {
-        self.moments.extend(further.moments);
-        self.means.extend(further.means);
-        self.excess_sq += further.excess_sq;
+    /// Of batches of [`BATCH`] triangles, but for the last.
+    fn of_batches(batches: Vec<Self>) -> Self {
+        let triangles = batches.iter().map(|batch| batch.means.len()).sum::<usize>();
+        let each = || (0..triangles).into_par_iter().with_min_len(BLOCK);
+        Self {
+            moments: each().map(|t| batches[t / BATCH].moments[t % BATCH]).collect(),
+            means: each().map(|t| batches[t / BATCH].means[t % BATCH]).collect(),
+            excess_sq: batches.iter().map(|batch| batch.excess_sq).sum(),
+        }
     }
 
     /// Of all triangles.
@@ -252,9 +255,7 @@ pub(crate) fn moments_on(
     let second_rule = SecondRule::new(triangles.iter().map(|&t| mesh.triangle_area(t)).sum());
     let of_block = |block: Range<usize>| on_block(mesh, triangles[block].iter().copied(), f, &second_rule);
     let blocks: Vec<_> = blocks_of(BATCH, triangles.len()).into_par_iter().map(of_block).collect();
-    let mut seen = SeenLoad::with_capacity(triangles.len());
-    blocks.into_iter().try_for_each(|block| block.map(|block| seen.extend(block)))?;
-    Ok(seen)
+    Ok(SeenLoad::of_batches(blocks.into_iter().collect::<Result<_, _>>()?))
 }
 
 /// The moments on one block of triangles.

@@ -1,5 +1,8 @@
 //! How the vertices of a mesh come from those of a coarser one.
 
+use crate::parallel::BLOCK;
+use crate::parallel::prelude::*;
+
 /// The vertices of a mesh as vertices of a coarser mesh and midpoints of its edges.
 ///
 /// The prolongation of a P1 function takes the mean of its values at the two ends; on uniform and bisected meshes the
@@ -14,10 +17,8 @@ impl Parents {
     /// # Panics
     /// When an end is no vertex of the coarser mesh.
     pub(in crate::mesh) fn new(coarse_vertices: usize, ends: Vec<[u32; 2]>) -> Self {
-        assert!(
-            ends.iter().flatten().all(|&end| (end as usize) < coarse_vertices),
-            "parents are coarse vertices"
-        );
+        let are_coarse = |ends: &[u32; 2]| ends.iter().all(|&end| (end as usize) < coarse_vertices);
+        assert!(ends.par_iter().with_min_len(BLOCK).all(are_coarse), "parents are coarse vertices");
         Self { coarse_vertices, ends }
     }
 

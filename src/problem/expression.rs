@@ -3,6 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
+mod elementary;
 mod error;
 mod lexer;
 mod parser;

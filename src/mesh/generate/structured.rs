@@ -7,7 +7,7 @@ mod sides;
 
 use crate::mesh::{Groups, Mesh, MeshError};
 use ancestry::{ancestry, disk_ancestry};
-use numbering::GridNumbering;
+use numbering::{GridNumbering, rows};
 pub use pattern::Pattern;
 use sides::{re_entrant_sides, sides_of_box};
 
@@ -56,32 +56,54 @@ fn grid(
 ) -> Result<Mesh, MeshError> {
     assert!(nx > 0 && ny > 0 && lower[0] < upper[0] && lower[1] < upper[1], "an empty grid");
     // Ends are met exactly, and a dyadic grid on the unit square has exact coordinates.
-    let coordinate = |axis: usize, k: f64, n: usize| {
-        let t = k / n as f64;
+    let coordinate = |axis: usize, k: f64| {
+        let t = k / [nx, ny][axis] as f64;
         lower[axis] * (1.0 - t) + upper[axis] * t
     };
-    let point = |i: f64, j: f64| [coordinate(0, i, nx), coordinate(1, j, ny)];
     let numbering = GridNumbering::new([nx, ny], pattern, &inside);
-    let mut points = vec![[0.0; 2]; numbering.vertices];
-    for (i, j, a) in numbering.corners() {
-        points[a] = point(i as f64, j as f64);
-    }
-    let mut triangles = Vec::new();
-    for (i, j) in numbering.cells() {
-        let [a, b, c, d] =
-            [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(|(i, j)| numbering.corner(i, j));
-        match pattern {
-            Pattern::Right => triangles.extend([[a, b, c], [a, c, d]]),
-            Pattern::Crossed => {
-                let centre = numbering.centre(i, j);
-                points[centre] = point(i as f64 + 0.5, j as f64 + 0.5);
-                triangles.extend([[a, b, centre], [b, c, centre], [c, d, centre], [d, a, centre]]);
-            }
-        }
-    }
+    let points = points(&numbering, pattern, coordinate);
+    let triangles =
+        rows(ny, |j| numbering.cells(j).flat_map(|i| in_cell(&numbering, pattern, i, j)).collect());
     let groups = groups(&numbering);
     let ancestry = ancestry(numbering, pattern, &inside);
     Ok(Mesh::new(points, triangles)?.with_ancestry(ancestry).with_groups(groups))
+}
+
+/// Corners, then the centres of the crossed pattern; `coordinate(axis, k)` is that of the line `k`.
+fn points(
+    numbering: &GridNumbering,
+    pattern: Pattern,
+    coordinate: impl Fn(usize, f64) -> f64 + Sync,
+) -> Vec<[f64; 2]> {
+    let [nx, ny] = numbering.cells;
+    let lines = |axis: usize, count: usize, shift: f64| -> Vec<f64> {
+        (0..count).map(|k| coordinate(axis, k as f64 + shift)).collect()
+    };
+    let (x, y) = (lines(0, nx + 1, 0.0), lines(1, ny + 1, 0.0));
+    let mut points = rows(ny + 1, |j| numbering.corners(j).map(|i| [x[i], y[j]]).collect());
+    if pattern == Pattern::Crossed {
+        let (x, y) = (lines(0, nx, 0.5), lines(1, ny, 0.5));
+        points.extend(rows(ny, |j| numbering.cells(j).map(|i| [x[i], y[j]]).collect()));
+    }
+    points
+}
+
+/// The triangles in the cell `(i, j)`.
+fn in_cell(
+    numbering: &GridNumbering,
+    pattern: Pattern,
+    i: usize,
+    j: usize,
+) -> impl Iterator<Item = [usize; 3]> {
+    let [a, b, c, d] = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(|(i, j)| numbering.corner(i, j));
+    let (triangles, count) = match pattern {
+        Pattern::Right => ([[a, b, c], [a, c, d], [0; 3], [0; 3]], 2),
+        Pattern::Crossed => {
+            let centre = numbering.centre(i, j);
+            ([[a, b, centre], [b, c, centre], [c, d, centre], [d, a, centre]], 4)
+        }
+    };
+    triangles.into_iter().take(count)
 }
 
 /// A disk, as `rings` rings of triangles around its centre; ring `k` has `6 k` vertices. The domain of the mesh is the

@@ -1,5 +1,7 @@
 //! The postfix program of a formula: built with constants folded, run on one point or on a lane of points.
 
+use super::elementary::{cosines, exponentials, sines};
+
 /// Most values that a program may hold at once: bounds the memory of an evaluation.
 pub(super) const MAX_DEPTH: usize = 200;
 
@@ -82,8 +84,8 @@ impl Instruction {
             IntegerPower(2) => stack.unary(|a| a * a),
             IntegerPower(3) => stack.unary(|a| a * a * a),
             IntegerPower(n) => stack.unary(|a| (1..n).fold(a, |power, _| power * a)),
-            Sin => stack.unary(f64::sin),
-            Cos => stack.unary(f64::cos),
+            Sin => sines(stack.top()),
+            Cos => cosines(stack.top()),
             Tan => stack.unary(f64::tan),
             Asin => stack.unary(f64::asin),
             Acos => stack.unary(f64::acos),
@@ -91,7 +93,7 @@ impl Instruction {
             Sinh => stack.unary(f64::sinh),
             Cosh => stack.unary(f64::cosh),
             Tanh => stack.unary(f64::tanh),
-            Exp => stack.unary(f64::exp),
+            Exp => exponentials(stack.top()),
             Ln => stack.unary(f64::ln),
             Sqrt => stack.unary(f64::sqrt),
             Abs => stack.unary(f64::abs),
@@ -159,10 +161,13 @@ impl<const L: usize> Stack<'_, L> {
     }
 
     #[inline(always)]
+    fn top(&mut self) -> &mut [f64; L] {
+        &mut self.values[self.height - 1]
+    }
+
+    #[inline(always)]
     fn unary(&mut self, f: impl Fn(f64) -> f64) {
-        for a in &mut self.values[self.height - 1] {
-            *a = f(*a);
-        }
+        self.top().iter_mut().for_each(|a| *a = f(*a));
     }
 
     #[inline(always)]

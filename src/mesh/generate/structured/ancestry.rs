@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::numbering::GridNumbering;
+use super::numbering::{GridNumbering, rows};
 use super::pattern::Pattern;
 use crate::mesh::Parents;
 
@@ -20,8 +20,9 @@ pub(in crate::mesh) fn ancestry(
             break;
         }
         let coarse = GridNumbering::new([nx / 2, ny / 2], pattern, &|i, j| inside(scale * i, scale * j));
-        let unlike = |(i, j): (usize, usize)| fine.is_inside(i, j) != coarse.is_inside(i / 2, j / 2);
-        if (0..ny).any(|j| (0..nx).any(|i| unlike((i, j)))) {
+        let alike = |i: usize, j: usize| fine.is_inside(i, j) == coarse.is_inside(i / 2, j / 2);
+        let both_are_whole = fine.is_whole() && coarse.is_whole();
+        if !both_are_whole && !(0..ny).all(|j| (0..nx).all(|i| alike(i, j))) {
             break;
         }
         generations.push(Arc::new(grid_parents(&fine, &coarse, pattern)));
@@ -33,21 +34,21 @@ pub(in crate::mesh) fn ancestry(
 
 /// The parents of the vertices of `fine` in the grid with half as many cells along either axis.
 fn grid_parents(fine: &GridNumbering, coarse: &GridNumbering, pattern: Pattern) -> Parents {
-    let mut ends = vec![[0; 2]; fine.vertices];
-    for (i, j, a) in fine.corners() {
-        let parents = if pattern == Pattern::Crossed && i % 2 == 1 && j % 2 == 1 {
+    let of_corner = |i: usize, j: usize| {
+        if pattern == Pattern::Crossed && i % 2 == 1 && j % 2 == 1 {
             [coarse.centre(i / 2, j / 2); 2]
         } else {
             // A corner, or the midpoint of a side or of the diagonal from the lower left to the upper right.
             [coarse.corner(i / 2, j / 2), coarse.corner(i.div_ceil(2), j.div_ceil(2))]
-        };
-        ends[a] = parents.map(|parent| parent as u32);
-    }
-    if pattern == Pattern::Crossed {
-        for (i, j) in fine.cells() {
-            let corner = coarse.corner(i.div_ceil(2), j.div_ceil(2));
-            ends[fine.centre(i, j)] = [coarse.centre(i / 2, j / 2), corner].map(|parent| parent as u32);
         }
+    };
+    let numbers = |parents: [usize; 2]| parents.map(|parent| parent as u32);
+    let [_, ny] = fine.cells;
+    let mut ends = rows(ny + 1, |j| fine.corners(j).map(|i| numbers(of_corner(i, j))).collect());
+    if pattern == Pattern::Crossed {
+        let of_centre =
+            |i: usize, j: usize| [coarse.centre(i / 2, j / 2), coarse.corner(i.div_ceil(2), j.div_ceil(2))];
+        ends.extend(rows(ny, |j| fine.cells(j).map(|i| numbers(of_centre(i, j))).collect()));
     }
     Parents::new(coarse.vertices, ends)
 }
