@@ -32,6 +32,7 @@ use crate::action::{Action, PairSolution, extend_to_boundary};
 use crate::discretization::{Displacement, PairDiscretization};
 use crate::flux::WedgeFluxes;
 use crate::geometry::friedrichs;
+use crate::parallel::sums;
 use crate::problem::{ContactProblem, Domain};
 
 /// A bound of the energy error `|||u - u_h||| = (sum_i mu_i |u_i - u_ih|_{H1}^2)^(1/2)`.
@@ -172,7 +173,7 @@ impl<'a> ErrorBounds<'a> {
         MeasureError::check(self.d, displacement)?;
         let seen = Action::recover(self.d, displacement);
         let action = likely_action(self.d, displacement, &seen);
-        self.with_action(displacement, &seen, action)
+        self.with_action(displacement, action)
     }
 
     /// Bounds the error of a certified solution, with its own action: what was cut off of the action that the displacements
@@ -182,20 +183,18 @@ impl<'a> ErrorBounds<'a> {
     /// [`MeasureError::OtherMesh`] when it is the solution on another mesh, and those of [`ErrorBound::new`].
     pub fn of_solution(&self, solution: &PairSolution) -> Result<ErrorBound, MeasureError> {
         MeasureError::check(self.d, solution.displacement())?;
-        let seen = Action::recover(self.d, solution.displacement());
-        self.with_action(solution.displacement(), &seen, solution.lambda().to_vec())
+        self.with_action(solution.displacement(), solution.lambda().to_vec())
     }
 
     /// With any `action >= 0` over vertices, zero on the boundary, where it is still to be continued to.
     fn with_action(
         &self,
         displacement: &Displacement,
-        seen: &[Action],
         mut action: Vec<f64>,
     ) -> Result<ErrorBound, MeasureError> {
         let d = self.d;
         let trace = self.trace.get_or_init(|| Trace::new(self.problem, self.domain, d));
-        let rest_sq = rest_sq(d, seen, &action);
+        let rest_sq = rest_sq(d, displacement, &action);
         extend_to_boundary(d, displacement, &mut action);
         let fluxes = WedgeFluxes::new(d, displacement, &action);
         let cells = Cells { d, displacement, lambda: &action, fluxes, trace };
@@ -220,12 +219,14 @@ fn likely_action(d: &PairDiscretization, [u1, u2]: &Displacement, seen: &[Action
 }
 
 /// `||rho_i||^2`, where `rho_i` is on `D_a` the action that membrane `i` sees, less that of the bound.
-fn rest_sq(d: &PairDiscretization, seen: &[Action], action: &[f64]) -> [f64; 2] {
-    let mut rest_sq = [0.0; 2];
-    for (&a, Action { from_membrane, .. }) in d.interior().iter().zip(seen) {
-        (0..2).for_each(|i| rest_sq[i] += d.dual_area()[a] * (from_membrane[i] - action[a]).powi(2));
-    }
-    rest_sq
+fn rest_sq(d: &PairDiscretization, displacement: &Displacement, action: &[f64]) -> [f64; 2] {
+    let [u1, u2] = displacement;
+    sums(d.interior().len(), |k| {
+        let a = d.interior()[k];
+        let [one, two] = d.balance(a, [u1, u2]);
+        let left = [one.imbalance, -two.imbalance].map(|force| force / d.dual_area()[a] - action[a]);
+        left.map(|left| d.dual_area()[a] * left * left)
+    })
 }
 
 #[cfg(test)]

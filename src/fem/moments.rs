@@ -104,9 +104,18 @@ impl LoadMoments {
         }
     }
 
+    /// `int_K f phi_i` for corner `i` of triangle `t`, whose area is known.
+    pub(crate) fn share(&self, t: usize, i: usize, area: f64) -> f64 {
+        match self {
+            Self::Constant(value) => value * area / 3.0,
+            Self::Varying { moments, .. } => moments[t].integrals[i],
+        }
+    }
+
     /// The load vector: the sums of the integrals around the vertices.
     pub(crate) fn vector(&self, mesh: &Mesh) -> Vec<f64> {
-        let on_element = |t: usize, a: usize| self.on(mesh, t).integrals[corner_of(mesh.triangles()[t], a)];
+        let on_element =
+            |t: usize, a: usize| self.share(t, corner_of(mesh.triangles()[t], a), mesh.triangle_area(t));
         let at = |a: usize| mesh.around().triangles(a).map(|t| on_element(t, a)).sum();
         (0..mesh.points().len()).into_par_iter().with_min_len(BLOCK).map(at).collect()
     }

@@ -12,7 +12,7 @@ pub(super) struct Fan {
     pub(super) closed: bool,
 }
 
-/// All fans; each wedge is in one of them. Linear time, but for sorting the triangles around each vertex.
+/// All fans; each wedge is in one of them. Linear time, but for sorting many triangles around one vertex.
 pub(super) fn fans(mesh: &Mesh) -> Vec<Fan> {
     let (mut walk, mut sides, mut fans) = (Walk::default(), Vec::new(), Vec::new());
     for a in 0..mesh.points().len() {
@@ -37,10 +37,13 @@ pub(super) fn wedge_of(mesh: &Mesh, k: usize, a: usize) -> (usize, [usize; 2]) {
     (corner, [1, 2].map(|j| triangle[(corner + j) % 3]))
 }
 
+/// Among so many wedges the next one is found by looking at each.
+const FEW: usize = 16;
+
 /// Memory for walks around vertices.
 #[derive(Default)]
 pub(super) struct Walk {
-    /// The first corner after the vertex and the number of the wedge, sorted: so successors are found.
+    /// The first corner after the vertex and the number of the wedge, sorted, where there are many: so successors are found.
     by_next: Vec<(usize, usize)>,
     is_first: Vec<bool>,
     seen: Vec<bool>,
@@ -54,11 +57,16 @@ impl Walk {
     pub(super) fn fans(&mut self, sides: &[[usize; 2]], mut each: impl FnMut(&[usize], bool)) {
         let Self { by_next, is_first, seen, fan } = self;
         by_next.clear();
-        by_next.extend(sides.iter().enumerate().map(|(k, &[next, _])| (next, k)));
-        // The few around a vertex are sorted by insertion.
-        by_next.sort_unstable();
+        if sides.len() > FEW {
+            by_next.extend(sides.iter().enumerate().map(|(k, &[next, _])| (next, k)));
+            by_next.sort_unstable();
+        }
         let following = |k: usize| {
-            let found = by_next.binary_search_by_key(&sides[k][1], |&(next, _)| next);
+            let last = sides[k][1];
+            if sides.len() <= FEW {
+                return sides.iter().position(|&[next, _]| next == last);
+            }
+            let found = by_next.binary_search_by_key(&last, |&(next, _)| next);
             found.ok().map(|place| by_next[place].1)
         };
         is_first.clear();
@@ -114,6 +122,26 @@ mod tests {
                 }
             }
             assert!(times.iter().all(|&times| times == 1));
+        }
+    }
+
+    #[test]
+    fn many_wedges_close_around_a_hub() {
+        let spokes = 3 * FEW;
+        let on_circle = |k: usize| {
+            let angle = std::f64::consts::TAU * k as f64 / spokes as f64;
+            [angle.cos(), angle.sin()]
+        };
+        let points = [[0.0; 2]].into_iter().chain((0..spokes).map(on_circle)).collect();
+        let triangles = (0..spokes).map(|k| [0, 1 + k, 1 + (k + 1) % spokes]).collect();
+        let (mesh, _) = renumbered(&Mesh::new(points, triangles).unwrap(), 7);
+        let fans = fans_of(&mesh);
+        let closed: Vec<&Fan> = fans.iter().map(|(_, fan)| fan).filter(|fan| fan.closed).collect();
+        assert!(closed.len() == 1 && closed[0].wedges.len() == spokes);
+        assert_eq!(fans.len(), 1 + spokes, "and an open one at each vertex of the boundary");
+        for pair in closed[0].wedges.windows(2) {
+            let corner = |w: usize, j: usize| mesh.triangles()[w / 3][(w % 3 + j) % 3];
+            assert_eq!(corner(pair[0], 2), corner(pair[1], 1));
         }
     }
 

@@ -17,8 +17,8 @@ use crate::parallel::{BLOCK, blocks};
 /// the wedges. Linear time, in parallel; the result does not depend on the number of threads.
 pub(crate) struct WedgeFluxes<'a> {
     data: Data<'a>,
-    /// In the order of the triangles around the vertices.
-    changes: Vec<[Change; 2]>,
+    /// `int |t_ih + mu_i grad u_ih|^2` over the wedges, in the order of the triangles around the vertices.
+    squares: Vec<[f64; 2]>,
 }
 
 /// What they are made from.
@@ -97,8 +97,8 @@ impl<'a> WedgeFluxes<'a> {
         let elements = (0..mesh.triangles().len()).into_par_iter().with_min_len(BLOCK).map(element).collect();
         let data = Data { mesh, load: &d.moments, lambda, elements };
         let vertices = mesh.points().len();
-        let mut changes = vec![[Change::default(); 2]; 3 * mesh.triangles().len()];
-        let mut rest = changes.as_mut_slice();
+        let mut squares = vec![[0.0; 2]; 3 * mesh.triangles().len()];
+        let mut rest = squares.as_mut_slice();
         let mut tasks = Vec::new();
         for block in blocks(vertices) {
             let (rows, others) =
@@ -110,23 +110,25 @@ impl<'a> WedgeFluxes<'a> {
             let mut patch = Patch::default();
             for a in vertices {
                 let (row, others) = rows.split_at_mut(around.row(a).len());
-                data.of_vertex(a, &mut patch, row);
+                data.of_vertex(a, &mut patch);
+                row.iter_mut().zip(patch.squares()).for_each(|(row, squares)| *row = squares);
                 rows = others;
             }
         });
-        Self { data, changes }
+        Self { data, squares }
     }
 
     /// `int_K |t_ih + mu_i grad u_ih|^2` for both membranes.
     pub(crate) fn distance_sq(&self, k: usize) -> [f64; 2] {
-        let (corners, area) = (self.data.mesh.corners(k), self.data.elements[k].area);
-        let mut sum = [0.0; 2];
-        for corner in 0..3 {
-            let products = Products::new([0, 1, 2].map(|j| corners[(corner + j) % 3]), area);
-            let change = self.change(k, corner);
-            (0..2).for_each(|i| sum[i] += products.square(change[i]));
-        }
-        sum
+        let mesh = self.data.mesh;
+        let [a, b, c] = mesh.triangles()[k].map(|a| self.squares[mesh.around().place(a, k)]);
+        [0, 1].map(|i| a[i] + b[i] + c[i])
+    }
+
+    /// `mu_i |u_ih|_{H1(K)}^2` of both membranes, of these tensions.
+    pub(crate) fn energy(&self, k: usize, tension: [f64; 2]) -> [f64; 2] {
+        let Element { area, flux } = self.data.elements[k];
+        [0, 1].map(|i| area * (flux[i][0] * flux[i][0] + flux[i][1] * flux[i][1]) / tension[i])
     }
 
     /// The outward fluxes of `t_ih` through the halves of the edge of triangle `k` from corner `corner` to the next, which lies
@@ -135,20 +137,24 @@ impl<'a> WedgeFluxes<'a> {
         let corners = self.data.mesh.corners(k);
         let q = self.data.elements[k].flux[membrane];
         let half = 0.5 * through(q, corners[corner], corners[(corner + 1) % 3]);
-        let (first, last) = (self.change(k, corner)[membrane], self.change(k, (corner + 1) % 3)[membrane]);
+        let change = |corner: usize| self.data.change(k, corner)[membrane];
+        let (first, last) = (change(corner), change((corner + 1) % 3));
         [half - first.entering, half + last.entering + last.source]
-    }
-
-    fn change(&self, k: usize, corner: usize) -> [Change; 2] {
-        let a = self.data.mesh.triangles()[k][corner];
-        self.changes[self.data.mesh.around().place(a, k)]
     }
 }
 
 impl Data<'_> {
-    /// The changes around one vertex, written to its row.
-    fn of_vertex(&self, a: usize, patch: &mut Patch, row: &mut [[Change; 2]]) {
-        let Patch { wedges, sides, walk } = patch;
+    /// The change on the wedge of triangle `k` at a corner.
+    fn change(&self, k: usize, corner: usize) -> [Change; 2] {
+        let (around, a) = (self.mesh.around(), self.mesh.triangles()[k][corner]);
+        let mut patch = Patch::default();
+        self.of_vertex(a, &mut patch);
+        patch.changes[around.place(a, k) - around.row(a).start]
+    }
+
+    /// The wedges around one vertex and the changes on them.
+    fn of_vertex(&self, a: usize, patch: &mut Patch) {
+        let Patch { wedges, changes, sides, walk } = patch;
         wedges.clear();
         sides.clear();
         for k in self.mesh.around().triangles(a) {
@@ -156,10 +162,12 @@ impl Data<'_> {
             wedges.push(self.wedge(k, corner, [a, next, last]));
             sides.push([next, last]);
         }
+        changes.clear();
+        changes.resize(wedges.len(), <[Change; 2]>::default());
         walk.fans(sides, |fan, closed| {
             for (membrane, sign) in [1.0, -1.0].into_iter().enumerate() {
                 let action = (!closed).then_some(sign * self.lambda[a]);
-                equilibrate(wedges, fan, action, membrane, row);
+                equilibrate(wedges, fan, action, membrane, changes);
             }
         });
     }
@@ -170,7 +178,7 @@ impl Data<'_> {
         let Element { area, flux } = self.elements[k];
         Wedge {
             area: area / 3.0,
-            load: [0, 1].map(|i: usize| self.load[i].on(self.mesh, k).integrals[corner]),
+            load: [0, 1].map(|i: usize| self.load[i].share(k, corner, area)),
             flux,
             spoke: [[0.5 * (p[0] + r[0]), 0.5 * (p[1] + r[1])], p],
             products: Products::new([p, q, r], area),
@@ -182,8 +190,19 @@ impl Data<'_> {
 #[derive(Default)]
 struct Patch {
     wedges: Vec<Wedge>,
+    changes: Vec<[Change; 2]>,
     sides: Vec<[usize; 2]>,
     walk: Walk,
+}
+
+impl Patch {
+    /// `int |t_ih + mu_i grad u_ih|^2` over the wedges.
+    fn squares(&self) -> impl Iterator<Item = [f64; 2]> {
+        self.wedges
+            .iter()
+            .zip(&self.changes)
+            .map(|(wedge, changes)| changes.map(|change| wedge.products.square(change)))
+    }
 }
 
 /// Balances each wedge of a fan, and chooses the circulation next to `-mu_i grad u_ih`. The action `-(-1)^i lambda_a` is given

@@ -105,6 +105,7 @@ impl Cells<'_> {
 
     fn on_triangle(&self, k: usize) -> Result<Sums, MeasureError> {
         let (flux_sq, oscillation) = (self.fluxes.distance_sq(k), self.oscillation(k));
+        let energy = self.fluxes.energy(k, self.d.tension());
         let (feasible_sq, lift) = (self.feasible_sq(k), self.trace.lift(k, self.lambda)?);
         let (contact, overlap) = self.contact(k);
         let mut sums = Sums { contact: contact + lift.action, overlap, ..Sums::default() };
@@ -122,7 +123,7 @@ impl Cells<'_> {
             sums.oscillation_sq += oscillation_sq;
             sums.feasible_sq += feasible_sq[i];
             sums.boundary_sq += lift_sq + beyond_sq;
-            sums.energy_sq += mu * self.seminorm_sq(k, |a| self.displacement[i][a]);
+            sums.energy_sq += energy[i];
         }
         Ok(sums)
     }
