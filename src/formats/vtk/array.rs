@@ -1,0 +1,147 @@
+//! Arrays of numbers in VTK's XML format: compressed by zlib block by block, on all cores, and written in base64.
+
+use std::borrow::Cow;
+use std::io::{self, Write};
+use std::ops::Range;
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use flate2::{Compress, Compression, FlushCompress, Status};
+
+use crate::parallel::blocks_of;
+use crate::parallel::prelude::*;
+
+/// Bytes that are compressed together.
+pub(super) const BLOCK: usize = 1 << 16;
+
+/// Bytes that are encoded together: threes of them become four letters.
+const ENCODED: usize = 3 << 14;
+
+/// A named array of numbers, one or more for each point or cell. They are asked for block by block while it is written, in
+/// no order: no copy of a whole array is made.
+pub(crate) struct DataArray<'a> {
+    pub(super) name: Cow<'static, str>,
+    kind: &'static str,
+    components: usize,
+    count: usize,
+    /// Bytes of a number.
+    width: usize,
+    bytes: Box<dyn Fn(Range<usize>) -> Vec<u8> + Sync + 'a>,
+}
+
+impl<'a> DataArray<'a> {
+    /// `value(0), ..., value(count - 1)`.
+    pub(crate) fn floats(
+        name: impl Into<Cow<'static, str>>,
+        count: usize,
+        value: impl Fn(usize) -> f64 + Sync + 'a,
+    ) -> Self {
+        Self::new(name, "Float64", count, move |k| value(k).to_le_bytes())
+    }
+
+    /// Vectors of the plane, as VTK's three components.
+    pub(crate) fn vectors(
+        name: impl Into<Cow<'static, str>>,
+        count: usize,
+        value: impl Fn(usize) -> [f64; 2] + Sync + 'a,
+    ) -> Self {
+        let component = move |k: usize| value(k / 3).get(k % 3).copied().unwrap_or(0.0);
+        Self { components: 3, ..Self::floats(name, 3 * count, component) }
+    }
+
+    pub(crate) fn integers(
+        name: impl Into<Cow<'static, str>>,
+        count: usize,
+        value: impl Fn(usize) -> usize + Sync + 'a,
+    ) -> Self {
+        Self::new(name, "Int64", count, move |k| (value(k) as i64).to_le_bytes())
+    }
+
+    pub(crate) fn flags(
+        name: impl Into<Cow<'static, str>>,
+        count: usize,
+        value: impl Fn(usize) -> bool + Sync + 'a,
+    ) -> Self {
+        Self::bytes(name, count, move |k| u8::from(value(k)))
+    }
+
+    pub(super) fn bytes(
+        name: impl Into<Cow<'static, str>>,
+        count: usize,
+        value: impl Fn(usize) -> u8 + Sync + 'a,
+    ) -> Self {
+        Self::new(name, "UInt8", count, move |k| [value(k)])
+    }
+
+    fn new<const WIDTH: usize>(
+        name: impl Into<Cow<'static, str>>,
+        kind: &'static str,
+        count: usize,
+        number: impl Fn(usize) -> [u8; WIDTH] + Sync + 'a,
+    ) -> Self {
+        let bytes = move |numbers: Range<usize>| {
+            let mut bytes = vec![[0; WIDTH]; numbers.len()];
+            bytes.iter_mut().zip(numbers).for_each(|(bytes, k)| *bytes = number(k));
+            bytes.into_flattened()
+        };
+        Self { name: name.into(), kind, components: 1, count, width: WIDTH, bytes: Box::new(bytes) }
+    }
+
+    /// Writes the array: a header of the numbers and sizes of the blocks, then the compressed blocks, each part in base64.
+    pub(super) fn write(&self, out: &mut impl Write) -> io::Result<()> {
+        // Of a scalar with a number of components, meshio makes an array of one column.
+        let components = match self.components {
+            1 => String::new(),
+            components => format!(r#" NumberOfComponents="{components}""#),
+        };
+        let (kind, name) = (self.kind, escaped(&self.name));
+        writeln!(out, r#"<DataArray type="{kind}" Name="{name}"{components} format="binary">"#)?;
+        let blocks = self.compressed()?;
+        let rest = self.count * self.width % BLOCK;
+        let sizes = blocks.iter().map(Vec::len);
+        let header: Vec<u8> =
+            [blocks.len(), BLOCK, rest].into_iter().chain(sizes).flat_map(usize::to_le_bytes).collect();
+        out.write_all(STANDARD.encode(header).as_bytes())?;
+        let compressed = blocks.concat();
+        let encoded: Vec<String> =
+            compressed.par_chunks(ENCODED).map(|bytes| STANDARD.encode(bytes)).collect();
+        encoded.iter().try_for_each(|letters| out.write_all(letters.as_bytes()))?;
+        writeln!(out, "\n</DataArray>")
+    }
+
+    /// The blocks, each a stream of zlib's.
+    fn compressed(&self) -> io::Result<Vec<Vec<u8>>> {
+        let start = || Compress::new(Compression::fast(), true);
+        let blocks = blocks_of(BLOCK / self.width, self.count).into_par_iter();
+        blocks.map_init(start, |zlib, numbers| deflated(zlib, &(self.bytes)(numbers))).collect()
+    }
+}
+
+/// A block as a stream of its own.
+fn deflated(zlib: &mut Compress, block: &[u8]) -> io::Result<Vec<u8>> {
+    zlib.reset();
+    let mut stream = Vec::with_capacity(BLOCK + BLOCK / 8);
+    loop {
+        let read = zlib.total_in() as usize;
+        let flush = if read < block.len() { FlushCompress::None } else { FlushCompress::Finish };
+        if zlib.compress_vec(&block[read..], &mut stream, flush)? == Status::StreamEnd {
+            return Ok(stream);
+        }
+        stream.reserve(BLOCK / 8);
+    }
+}
+
+/// A name as the value of an attribute; control characters, which XML does not have, are left out.
+fn escaped(name: &str) -> String {
+    let mut text = String::new();
+    for letter in name.chars().filter(|letter| !letter.is_control()) {
+        match letter {
+            '&' => text.push_str("&amp;"),
+            '<' => text.push_str("&lt;"),
+            '>' => text.push_str("&gt;"),
+            '"' => text.push_str("&quot;"),
+            _ => text.push(letter),
+        }
+    }
+    text
+}
