@@ -6,7 +6,8 @@ use std::ops::Range;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use flate2::{Compress, Compression, FlushCompress, Status};
+use flate2::Compression;
+use flate2::write::ZlibEncoder;
 
 use crate::parallel::blocks_of;
 use crate::parallel::prelude::*;
@@ -109,25 +110,14 @@ impl<'a> DataArray<'a> {
         writeln!(out, "\n</DataArray>")
     }
 
-    /// The blocks, each a stream of zlib's.
+    /// The blocks, each a stream of its own.
     fn compressed(&self) -> io::Result<Vec<Vec<u8>>> {
-        let start = || Compress::new(Compression::fast(), true);
-        let blocks = blocks_of(BLOCK / self.width, self.count).into_par_iter();
-        blocks.map_init(start, |zlib, numbers| deflated(zlib, &(self.bytes)(numbers))).collect()
-    }
-}
-
-/// A block as a stream of its own.
-fn deflated(zlib: &mut Compress, block: &[u8]) -> io::Result<Vec<u8>> {
-    zlib.reset();
-    let mut stream = Vec::with_capacity(BLOCK + BLOCK / 8);
-    loop {
-        let read = zlib.total_in() as usize;
-        let flush = if read < block.len() { FlushCompress::None } else { FlushCompress::Finish };
-        if zlib.compress_vec(&block[read..], &mut stream, flush)? == Status::StreamEnd {
-            return Ok(stream);
-        }
-        stream.reserve(BLOCK / 8);
+        let start = || ZlibEncoder::new(Vec::new(), Compression::fast());
+        let stream = |zlib: &mut ZlibEncoder<Vec<u8>>, numbers| {
+            zlib.write_all(&(self.bytes)(numbers))?;
+            zlib.reset(Vec::with_capacity(BLOCK))
+        };
+        blocks_of(BLOCK / self.width, self.count).into_par_iter().map_init(start, stream).collect()
     }
 }
 
