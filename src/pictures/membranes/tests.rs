@@ -77,6 +77,7 @@ impl Solution {
             title,
             points: &self.points,
             triangles: &self.triangles,
+            ancestry: &[],
             upper: &self.upper,
             lower: &self.lower,
             lambda: &self.lambda,
