@@ -266,7 +266,8 @@ fn write_results(
     };
     let mesh = study.mesh();
     let mut results = folder.results(Part::Solution);
-    let mut left_out = write_solution(&mut results, case, (d, solution), Some(bound), pictures)?;
+    let shared = Arc::new(solution.clone());
+    let mut left_out = write_solution(&mut results, case, (d, &shared), Some(bound), pictures)?;
     left_out.extend(write_mesh(&mut results, &case.title, mesh, solution, pictures)?);
     left_out.extend(write_history(&mut results, &case.title, levels, pictures)?);
     let seconds = Seconds { bound: last.bound_seconds, ..Seconds::default() };
