@@ -15,6 +15,9 @@ use crate::parallel::prelude::*;
 /// Bytes that are compressed together.
 pub(super) const BLOCK: usize = 1 << 16;
 
+/// Bytes of a block that are tried.
+const SAMPLE: usize = BLOCK / 16;
+
 /// Bytes that are encoded together: threes of them become four letters.
 const ENCODED: usize = 3 << 14;
 
@@ -112,13 +115,37 @@ impl<'a> DataArray<'a> {
 
     /// The blocks, each a stream of its own.
     fn compressed(&self) -> io::Result<Vec<Vec<u8>>> {
-        let start = || ZlibEncoder::new(Vec::new(), Compression::fast());
-        let stream = |zlib: &mut ZlibEncoder<Vec<u8>>, numbers| {
-            zlib.write_all(&(self.bytes)(numbers))?;
-            zlib.reset(Vec::with_capacity(BLOCK))
-        };
-        blocks_of(BLOCK / self.width, self.count).into_par_iter().map_init(start, stream).collect()
+        let blocks = blocks_of(BLOCK / self.width, self.count).into_par_iter();
+        blocks.map_init(Deflate::new, |zlib, numbers| zlib.stream(&(self.bytes)(numbers))).collect()
     }
+}
+
+/// Compresses blocks, or keeps them as they are: both are streams of zlib's.
+///
+/// The digits of a smooth function are noise. They do not become fewer, and to find that out takes most of the time: it is asked of
+/// a sample.
+struct Deflate {
+    fast: ZlibEncoder<Vec<u8>>,
+    none: ZlibEncoder<Vec<u8>>,
+}
+
+impl Deflate {
+    fn new() -> Self {
+        let encoder = |level| ZlibEncoder::new(Vec::new(), level);
+        Self { fast: encoder(Compression::fast()), none: encoder(Compression::none()) }
+    }
+
+    fn stream(&mut self, block: &[u8]) -> io::Result<Vec<u8>> {
+        let sample = &block[..block.len().min(SAMPLE)];
+        let is_noise = encoded(&mut self.fast, sample)?.len() > sample.len();
+        encoded(if is_noise { &mut self.none } else { &mut self.fast }, block)
+    }
+}
+
+fn encoded(encoder: &mut ZlibEncoder<Vec<u8>>, bytes: &[u8]) -> io::Result<Vec<u8>> {
+    encoder.write_all(bytes)?;
+    // What was written went to the vector that is replaced by this one.
+    encoder.reset(Vec::new())
 }
 
 /// A name as the value of an attribute; control characters, which XML does not have, are left out.
@@ -134,4 +161,29 @@ fn escaped(name: &str) -> String {
         }
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What a stream of zlib's has beside what it holds, when that is kept as it is: two bytes, the head of a block for each 64 KiB or
+    /// less, four bytes.
+    const BESIDE: usize = 2 + 2 * 5 + 4;
+
+    fn sizes(value: impl Fn(usize) -> f64 + Sync) -> Vec<usize> {
+        let array = DataArray::floats("", 3 * BLOCK / 8, value);
+        array.compressed().unwrap().iter().map(Vec::len).collect()
+    }
+
+    #[test]
+    fn noise_is_kept_as_it_is_and_all_else_is_compressed() {
+        let noise = sizes(|k| (1.0 + k as f64).sqrt());
+        assert!(noise.iter().all(|&size| (BLOCK..=BLOCK + BESIDE).contains(&size)), "{noise:?}");
+        let [zeros, whole] = [sizes(|_| 0.0), sizes(|k| (k % 64) as f64)];
+        assert!(zeros.iter().chain(&whole).all(|&size| size < BLOCK / 4), "{zeros:?} {whole:?}");
+        // Each block for itself.
+        let mixed = sizes(|k| if k < BLOCK / 8 { 0.0 } else { (k as f64).sqrt() });
+        assert_eq!(mixed, [zeros[0], noise[1], noise[2]]);
+    }
 }
