@@ -178,12 +178,12 @@ mod tests {
 
     #[test]
     fn noise_is_kept_as_it_is_and_all_else_is_compressed() {
-        let noise = sizes(|k| (1.0 + k as f64).sqrt());
+        let noise = sizes(|k| ((BLOCK + k) as f64).sqrt());
         assert!(noise.iter().all(|&size| (BLOCK..=BLOCK + BESIDE).contains(&size)), "{noise:?}");
         let [zeros, whole] = [sizes(|_| 0.0), sizes(|k| (k % 64) as f64)];
         assert!(zeros.iter().chain(&whole).all(|&size| size < BLOCK / 4), "{zeros:?} {whole:?}");
         // Each block for itself.
-        let mixed = sizes(|k| if k < BLOCK / 8 { 0.0 } else { (k as f64).sqrt() });
+        let mixed = sizes(|k| if k < BLOCK / 8 { 0.0 } else { ((BLOCK + k) as f64).sqrt() });
         assert_eq!(mixed, [zeros[0], noise[1], noise[2]]);
     }
 }
