@@ -5,6 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::fem::gradient;
 use crate::geometry::twice_signed_area;
 use crate::mesh::Mesh;
+use crate::parallel::prelude::*;
+use crate::parallel::sums;
 
 type Point = [f64; 2];
 
@@ -31,7 +33,8 @@ pub struct Rim {
 }
 
 impl Rim {
-    /// The rim of the contact set of a gap, both over the vertices of `mesh`. Linear time, but for sorting the edges along it.
+    /// The rim of the contact set of a gap, both over the vertices of `mesh`. Linear time, but for sorting the edges along it; all
+    /// but finding them is done near the rim alone.
     ///
     /// # Panics
     /// When the slices have not an entry for each vertex.
@@ -45,7 +48,8 @@ impl Rim {
     fn placed(mesh: &Mesh, touching: Vec<bool>, fraction: impl Fn(usize, usize) -> f64) -> Self {
         let points = mesh.points();
         let mut rim = Self { touching, crossings: BTreeMap::new(), lines: Vec::new(), area: 0.0 };
-        for &corners in mesh.triangles() {
+        let crossed = crossed(mesh, &rim.touching);
+        for corners in crossed.iter().map(|&t| mesh.triangles()[t]) {
             for (a, b) in (0..3).map(|i| (corners[i], corners[(i + 1) % 3])) {
                 if rim.touching[a] != rim.touching[b] {
                     let [a, b] = if rim.touching[a] { [a, b] } else { [b, a] };
@@ -57,8 +61,8 @@ impl Rim {
             }
         }
         let area = |corners: [Point; 3]| 0.5 * twice_signed_area(corners);
-        rim.area = (0..mesh.triangles().len()).map(|t| rim.part(mesh, t).map(area).sum::<f64>()).sum();
-        rim.lines = rim.chained(mesh);
+        [rim.area] = sums(mesh.triangles().len(), |t| [rim.part(mesh, t).map(area).sum()]);
+        rim.lines = rim.chained(mesh, &crossed);
         rim
     }
 
@@ -87,11 +91,11 @@ impl Rim {
         parts.into_iter().flatten()
     }
 
-    /// The segments of all triangles, joined.
-    fn chained(&self, mesh: &Mesh) -> Vec<Vec<Point>> {
+    /// The segments of the triangles that it crosses, joined.
+    fn chained(&self, mesh: &Mesh, crossed: &[usize]) -> Vec<Vec<Point>> {
         type Edge = [usize; 2];
         let mut next: BTreeMap<Edge, Edge> = BTreeMap::new();
-        for t in 0..mesh.triangles().len() {
+        for &t in crossed {
             let ([a, b, c], _) = rotated(&self.touching, mesh, t);
             match [a, b, c].map(|a| self.touching[a]) {
                 [true, true, false] => next.insert([b, c], [a, c]),
@@ -128,55 +132,67 @@ fn rotated(touching: &[bool], mesh: &Mesh, t: usize) -> ([usize; 3], [Point; 3])
     (corners, corners.map(|a| mesh.points()[a]))
 }
 
+/// The triangles of which this holds, in increasing order.
+fn triangles(mesh: &Mesh, wanted: impl Fn([usize; 3]) -> bool + Sync) -> Vec<usize> {
+    (0..mesh.triangles().len()).into_par_iter().filter(|&t| wanted(mesh.triangles()[t])).collect()
+}
+
+/// Those with corners that touch and others.
+fn crossed(mesh: &Mesh, touching: &[bool]) -> Vec<usize> {
+    triangles(mesh, |[a, b, c]| touching[a] != touching[b] || touching[b] != touching[c])
+}
+
 /// The vertices in contact, with those held ones at which it reaches the boundary.
 fn closure(mesh: &Mesh, gap: &[f64], contact: &[bool]) -> Vec<bool> {
     let mut touching = contact.to_vec();
-    for corners in mesh.triangles() {
+    for t in crossed(mesh, contact) {
         // Along one of its three edges, the ends are two of the corners.
-        if corners.iter().any(|&b| contact[b]) {
-            corners.iter().for_each(|&a| touching[a] |= gap[a] == 0.0);
-        }
+        mesh.triangles()[t].iter().for_each(|&a| touching[a] |= gap[a] == 0.0);
     }
     // A corner of the domain may have no neighbour inside.
-    let along_edges = touching.clone();
-    for corners in mesh.triangles() {
-        let count = corners.iter().filter(|&&a| along_edges[a]).count();
-        if count == 2 && corners.iter().all(|&a| gap[a] == 0.0) {
-            corners.iter().for_each(|&a| touching[a] = true);
-        }
+    let cut_off = triangles(mesh, |corners| {
+        let count = corners.iter().filter(|&&a| touching[a]).count();
+        count == 2 && corners.iter().all(|&a| gap[a] == 0.0)
+    });
+    for t in cut_off {
+        mesh.triangles()[t].iter().for_each(|&a| touching[a] = true);
     }
     touching
 }
 
-/// The root of the gap, and its gradients.
+/// The root of the gap beyond the rim, and its gradients.
 struct Extrapolation<'m> {
     mesh: &'m Mesh,
-    root: Vec<f64>,
+    gap: &'m [f64],
     /// The mean gradient over the triangles around a vertex in which nothing touches, times their area; and that.
     sums: Vec<([f64; 2], f64)>,
 }
 
 impl<'m> Extrapolation<'m> {
-    fn new(mesh: &'m Mesh, gap: &[f64], touching: &[bool]) -> Self {
-        let root: Vec<f64> = gap.iter().map(|w| w.max(0.0).sqrt()).collect();
-        let mut near = vec![false; root.len()];
-        let mixed = |corners: &[usize; 3]| corners.iter().any(|&a| touching[a]);
-        for corners in mesh.triangles().iter().filter(|corners| mixed(corners)) {
-            corners.iter().for_each(|&a| near[a] = true);
+    fn new(mesh: &'m Mesh, gap: &'m [f64], touching: &[bool]) -> Self {
+        let mut near = vec![false; gap.len()];
+        for t in crossed(mesh, touching) {
+            mesh.triangles()[t].iter().for_each(|&a| near[a] = true);
         }
-        let mut sums = vec![([0.0; 2], 0.0); root.len()];
-        for (t, corners) in mesh.triangles().iter().enumerate() {
-            if mixed(corners) || !corners.iter().any(|&a| near[a]) {
-                continue;
-            }
-            let (slope, area) = (gradient(mesh.corners(t), corners.map(|a| root[a])), mesh.triangle_area(t));
-            for &a in corners {
-                let (sum, total) = &mut sums[a];
+        let beyond = triangles(mesh, |corners| {
+            corners.iter().any(|&a| near[a]) && !corners.iter().any(|&a| touching[a])
+        });
+        let mut place = Self { mesh, gap, sums: vec![([0.0; 2], 0.0); gap.len()] };
+        for t in beyond {
+            let corners = mesh.triangles()[t];
+            let slope = gradient(mesh.corners(t), corners.map(|a| place.root(a)));
+            let area = mesh.triangle_area(t);
+            for a in corners {
+                let (sum, total) = &mut place.sums[a];
                 (0..2).for_each(|k| sum[k] += area * slope[k]);
                 *total += area;
             }
         }
-        Self { mesh, root, sums }
+        place
+    }
+
+    fn root(&self, a: usize) -> f64 {
+        self.gap[a].max(0.0).sqrt()
     }
 
     /// Where the root, continued from `b`, is zero on the edge to it from `a`, as a fraction of that.
@@ -188,7 +204,7 @@ impl<'m> Extrapolation<'m> {
         let [from, to] = [a, b].map(|a| self.mesh.points()[a]);
         let rise = (0..2).map(|k| sum[k] / total * (to[k] - from[k])).sum::<f64>();
         // Where it does not fall towards the contact, it tells nothing.
-        if rise > 0.0 { (1.0 - self.root[b] / rise).clamp(0.0, 1.0) } else { 0.5 }
+        if rise > 0.0 { (1.0 - self.root(b) / rise).clamp(0.0, 1.0) } else { 0.5 }
     }
 }
 

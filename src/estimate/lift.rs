@@ -6,8 +6,8 @@ use crate::discretization::PairDiscretization;
 use crate::fem::CutRule;
 use crate::geometry::twice_signed_area;
 use crate::mesh::{Mesh, SubTriangulation};
-use crate::parallel::blocks_of;
 use crate::parallel::prelude::*;
+use crate::parallel::{blocks_of, join};
 
 /// Triangles that are integrated together: enough for all threads, few enough to need no memory.
 const BATCH: usize = 1 << 16;
@@ -51,12 +51,13 @@ pub(super) fn dual_norm(
     let (spaces, mesh) = Spaces::new(d, sub, refinements)?;
     let parts = mesh.triangles().len() / sub.mesh().triangles().len();
     let [deep, change] = functionals(&mesh, rule, |t, point| rho(t / parts, point));
+    // By far the largest mesh of all: its memory is for the lifts.
+    drop(mesh);
     let [deep, change] = [deep, change].map(|functional| spaces.functional(&functional));
-    Ok(DualNorm {
-        value: spaces.dual_norm(&deep)?,
-        coarser: spaces.dual_norm(&spaces.restrict(&deep))?,
-        quadrature: spaces.dual_norm(&spaces.restrict(&change))?,
-    })
+    let on_coarser = |functional| spaces.dual_norm(&spaces.restrict(functional));
+    let (value, on_coarser) = join(|| spaces.dual_norm(&deep), || [on_coarser(&deep), on_coarser(&change)]);
+    let [coarser, quadrature] = on_coarser;
+    Ok(DualNorm { value: value?, coarser: coarser?, quadrature: quadrature? })
 }
 
 /// `int rho phi_a` over vertices, and what the last subdivision of the rule changes in it.

@@ -6,8 +6,8 @@ use crate::action::PairSolution;
 use crate::discretization::{Displacement, PairDiscretization};
 use crate::fem::{CutRule, gradient};
 use crate::mesh::{Mesh, SubTriangulation, VertexKind};
-use crate::parallel::blocks_of;
 use crate::parallel::prelude::*;
+use crate::parallel::{blocks_of, join};
 use crate::problem::{Domain, ExactSolution};
 
 /// Subdivisions of the triangles of `S_h` that a curve crosses: their parts are smaller than `h / 30`.
@@ -89,10 +89,13 @@ impl ErrorNorms {
     ) -> Result<Self, MeasureError> {
         MeasureError::check(d, [fields.lambda])?;
         let sub = SubTriangulation::new(d.mesh())?;
-        let [sums, shallow] = integrate(d.mesh(), &sub, fields, rule, exact);
-        let lambda_dual = dual_norm(d, &sub, rule, LIFT_REFINEMENTS, |t, [x, y]| {
-            exact.lambda(x, y) - fields.lambda[sub.vertex_of(t)]
-        })?;
+        let rho = |t: usize, [x, y]: [f64; 2]| exact.lambda(x, y) - fields.lambda[sub.vertex_of(t)];
+        // The spaces of the lift are made by one core, for the most part.
+        let (lambda_dual, [sums, shallow]) = join(
+            || dual_norm(d, &sub, rule, LIFT_REFINEMENTS, rho),
+            || integrate(d.mesh(), &sub, fields, rule, exact),
+        );
+        let lambda_dual = lambda_dual?;
         let nodal_max = nodal_max(d.mesh(), fields.displacement, exact);
         sums.check_finite(exact)?;
         Ok(Self {

@@ -1,91 +1,52 @@
 //! VTK's XML format for unstructured grids and polylines: binary, compressed by zlib; ParaView, PyVista and meshio read it.
 
-use std::borrow::Cow;
+mod array;
+
 use std::io::{self, Write};
 
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
-use flate2::Compression;
-use flate2::write::ZlibEncoder;
-
-/// Bytes that are compressed together.
-const BLOCK: usize = 1 << 16;
+pub(crate) use array::DataArray;
 
 /// VTK's numbers for the shapes of cells.
-pub(crate) const VTK_TRIANGLE: u8 = 5;
-pub(crate) const VTK_POLYGON: u8 = 7;
-
-/// A named array of numbers, one for each point or cell.
-pub(crate) struct DataArray {
-    name: Cow<'static, str>,
-    kind: &'static str,
-    components: usize,
-    bytes: Vec<u8>,
-}
-
-impl DataArray {
-    pub(crate) fn floats(name: impl Into<Cow<'static, str>>, values: impl IntoIterator<Item = f64>) -> Self {
-        Self {
-            name: name.into(),
-            kind: "Float64",
-            components: 1,
-            bytes: values.into_iter().flat_map(f64::to_le_bytes).collect(),
-        }
-    }
-
-    /// Vectors of the plane, as VTK's three components.
-    pub(crate) fn vectors(
-        name: impl Into<Cow<'static, str>>,
-        values: impl IntoIterator<Item = [f64; 2]>,
-    ) -> Self {
-        let components = values.into_iter().flat_map(|[x, y]| [x, y, 0.0]);
-        Self { components: 3, ..Self::floats(name, components) }
-    }
-
-    pub(crate) fn integers(
-        name: impl Into<Cow<'static, str>>,
-        values: impl IntoIterator<Item = usize>,
-    ) -> Self {
-        Self {
-            name: name.into(),
-            kind: "Int64",
-            components: 1,
-            bytes: values.into_iter().flat_map(integer).collect(),
-        }
-    }
-
-    pub(crate) fn flags(name: impl Into<Cow<'static, str>>, values: impl IntoIterator<Item = bool>) -> Self {
-        Self {
-            name: name.into(),
-            kind: "UInt8",
-            components: 1,
-            bytes: values.into_iter().map(u8::from).collect(),
-        }
-    }
-}
+const VTK_TRIANGLE: u8 = 5;
+const VTK_POLYGON: u8 = 7;
 
 /// The cells of a grid, all of one shape.
-pub(crate) struct Cells {
-    shape: u8,
+pub(crate) struct Cells<'a> {
     count: usize,
-    corners: Vec<u8>,
-    ends: Vec<u8>,
+    corners: DataArray<'a>,
+    ends: DataArray<'a>,
+    shapes: DataArray<'a>,
 }
 
-impl Cells {
-    /// Cells of VTK's `shape`, each given by the numbers of its corners.
-    pub(crate) fn new(shape: u8, cells: impl Iterator<Item: IntoIterator<Item = usize>>) -> Self {
-        let (mut count, mut end) = (0, 0);
+impl<'a> Cells<'a> {
+    pub(crate) fn triangles(triangles: &'a [[usize; 3]]) -> Self {
+        let (count, corners) = (triangles.len(), triangles.as_flattened());
+        Self::new(VTK_TRIANGLE, count, corners.len(), |k| corners[k], |k| 3 * (k + 1))
+    }
+
+    /// Polygons, each given by the numbers of its corners.
+    pub(crate) fn polygons(polygons: impl Iterator<Item: IntoIterator<Item = usize>>) -> Self {
         let (mut corners, mut ends) = (Vec::new(), Vec::new());
-        for cell in cells {
-            for corner in cell {
-                corners.extend(integer(corner));
-                end += 1;
-            }
-            ends.extend(integer(end));
-            count += 1;
+        for polygon in polygons {
+            corners.extend(polygon);
+            ends.push(corners.len());
         }
-        Self { shape, count, corners, ends }
+        Self::new(VTK_POLYGON, ends.len(), corners.len(), move |k| corners[k], move |k| ends[k])
+    }
+
+    fn new(
+        shape: u8,
+        count: usize,
+        corners: usize,
+        corner: impl Fn(usize) -> usize + Sync + 'a,
+        end: impl Fn(usize) -> usize + Sync + 'a,
+    ) -> Self {
+        Self {
+            count,
+            corners: DataArray::integers("connectivity", corners, corner),
+            ends: DataArray::integers("offsets", count, end),
+            shapes: DataArray::bytes("types", count, move |_| shape),
+        }
     }
 }
 
@@ -111,9 +72,9 @@ pub(crate) fn write_grid(
     }
     write_points(out, points)?;
     writeln!(out, "<Cells>")?;
-    write_array(out, r#"type="Int64" Name="connectivity""#, &cells.corners)?;
-    write_array(out, r#"type="Int64" Name="offsets""#, &cells.ends)?;
-    write_array(out, r#"type="UInt8" Name="types""#, &vec![cells.shape; cells.count])?;
+    for array in [&cells.corners, &cells.ends, &cells.shapes] {
+        array.write(out)?;
+    }
     writeln!(out, "</Cells>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>")?;
     out.flush()
 }
@@ -139,10 +100,10 @@ pub(crate) fn write_lines(
         *end += line.len();
         Some(*end)
     });
+    let ends: Vec<usize> = ends.collect();
     writeln!(out, "<Lines>")?;
-    let numbers: Vec<u8> = (0..points.len()).flat_map(integer).collect();
-    write_array(out, r#"type="Int64" Name="connectivity""#, &numbers)?;
-    write_array(out, r#"type="Int64" Name="offsets""#, &ends.flat_map(integer).collect::<Vec<u8>>())?;
+    DataArray::integers("connectivity", points.len(), |k| k).write(out)?;
+    DataArray::integers("offsets", ends.len(), |k| ends[k]).write(out)?;
     writeln!(out, "</Lines>\n</Piece>\n</PolyData>\n</VTKFile>")?;
     out.flush()
 }
@@ -164,63 +125,22 @@ fn write_section(out: &mut impl Write, location: Location, arrays: &[DataArray])
     let has_lambda = arrays.iter().any(|array| array.name == "lambda");
     let first = if has_lambda { r#" Scalars="lambda""# } else { "" };
     writeln!(out, "<{section}{first}>")?;
-    for DataArray { name, kind, components, bytes } in arrays {
-        // Of a scalar with a number of components, meshio makes an array of one column.
-        let components =
-            if *components == 1 { String::new() } else { format!(r#" NumberOfComponents="{components}""#) };
-        let attributes = format!(r#"type="{kind}" Name="{}"{components}"#, escaped(name));
-        write_array(out, &attributes, bytes)?;
-    }
+    arrays.iter().try_for_each(|array| array.write(out))?;
     writeln!(out, "</{section}>")
 }
 
 fn write_points(out: &mut impl Write, points: &[[f64; 2]]) -> io::Result<()> {
     writeln!(out, "<Points>")?;
-    let coordinates: Vec<u8> =
-        points.iter().flat_map(|&[x, y]| [x, y, 0.0]).flat_map(f64::to_le_bytes).collect();
-    write_array(out, r#"type="Float64" Name="Points" NumberOfComponents="3""#, &coordinates)?;
+    DataArray::vectors("Points", points.len(), |a| points[a]).write(out)?;
     writeln!(out, "</Points>")
-}
-
-/// One data array: a header of the numbers and sizes of the blocks, then the compressed blocks, each part in base64.
-fn write_array(out: &mut impl Write, attributes: &str, bytes: &[u8]) -> io::Result<()> {
-    let mut header = vec![bytes.len().div_ceil(BLOCK) as u64, BLOCK as u64, (bytes.len() % BLOCK) as u64];
-    let mut compressed = Vec::new();
-    for block in bytes.chunks(BLOCK) {
-        let before = compressed.len();
-        let mut encoder = ZlibEncoder::new(compressed, Compression::fast());
-        encoder.write_all(block)?;
-        compressed = encoder.finish()?;
-        header.push((compressed.len() - before) as u64);
-    }
-    let header: Vec<u8> = header.iter().flat_map(|n| n.to_le_bytes()).collect();
-    writeln!(out, r#"<DataArray {attributes} format="binary">"#)?;
-    writeln!(out, "{}{}", STANDARD.encode(header), STANDARD.encode(compressed))?;
-    writeln!(out, "</DataArray>")
-}
-
-/// A name as the value of an attribute; control characters, which XML does not have, are left out.
-fn escaped(name: &str) -> String {
-    let mut text = String::new();
-    for letter in name.chars().filter(|letter| !letter.is_control()) {
-        match letter {
-            '&' => text.push_str("&amp;"),
-            '<' => text.push_str("&lt;"),
-            '>' => text.push_str("&gt;"),
-            '"' => text.push_str("&quot;"),
-            _ => text.push(letter),
-        }
-    }
-    text
-}
-
-fn integer(number: usize) -> [u8; 8] {
-    (number as i64).to_le_bytes()
 }
 
 /// Reading back, for the tests of all writers.
 #[cfg(test)]
 pub(crate) mod samples {
+    use base64::Engine;
+    use base64::engine::general_purpose::STANDARD;
+
     use super::*;
 
     /// The bytes of the array of this name in a file, decompressed.
@@ -255,13 +175,14 @@ pub(crate) mod samples {
 
 #[cfg(test)]
 mod tests {
+    use super::array::BLOCK;
     use super::samples::{floats, integers, read_array};
     use super::*;
 
     #[test]
     fn vectors_alone_have_a_number_of_components() {
-        let data = [DataArray::floats("scalar", [1.0]), DataArray::vectors("vector", [[1.0, 2.0]])];
-        let cells = Cells::new(VTK_POLYGON, std::iter::empty::<[usize; 3]>());
+        let data = [DataArray::floats("scalar", 1, |_| 1.0), DataArray::vectors("vector", 1, |_| [1.0, 2.0])];
+        let cells = Cells::polygons(std::iter::empty::<[usize; 3]>());
         let mut file = Vec::new();
         write_grid(&mut file, &[[0.0, 0.0]], &cells, &[(Location::Points, &data)]).unwrap();
         let file = String::from_utf8(file).unwrap();
@@ -272,8 +193,8 @@ mod tests {
 
     #[test]
     fn names_of_all_kinds_are_attributes() {
-        let data = [DataArray::flags("a \"<b>\" & c\n", [true])];
-        let cells = Cells::new(VTK_POLYGON, std::iter::empty::<[usize; 3]>());
+        let data = [DataArray::flags("a \"<b>\" & c\n", 1, |_| true)];
+        let cells = Cells::polygons(std::iter::empty::<[usize; 3]>());
         let mut file = Vec::new();
         write_grid(&mut file, &[[0.0, 0.0]], &cells, &[(Location::Points, &data)]).unwrap();
         let file = String::from_utf8(file).unwrap();
@@ -285,8 +206,8 @@ mod tests {
         let a_block = BLOCK / 8;
         for count in [0, 1, a_block - 1, a_block, a_block + 1, 3 * a_block] {
             let values: Vec<f64> = (0..count).map(|k| (k as f64).sqrt()).collect();
-            let data = [DataArray::floats("values", values.iter().copied())];
-            let cells = Cells::new(VTK_POLYGON, (0..count).map(|k| [k, k + 1, k + 2, k + 3]));
+            let data = [DataArray::floats("values", count, |k| values[k])];
+            let cells = Cells::polygons((0..count).map(|k| [k, k + 1, k + 2, k + 3]));
             let mut file = Vec::new();
             write_grid(&mut file, &vec![[1.0, -2.0]; count], &cells, &[(Location::Cells, &data)]).unwrap();
             let file = String::from_utf8(file).unwrap();
@@ -304,7 +225,7 @@ mod tests {
         let (loop_, line) = ([[0.0, 1.0], [2.0, 3.0], [0.0, 1.0]], [[4.0, 5.0], [6.0, 7.0]]);
         for (lines, ends) in [(vec![&loop_[..], &line[..]], vec![3, 5]), (Vec::new(), Vec::new())] {
             let mut file = Vec::new();
-            let numbers = DataArray::integers("gap", (1..).take(lines.len()));
+            let numbers = DataArray::integers("gap", lines.len(), |k| k + 1);
             write_lines(&mut file, &lines, &[numbers]).unwrap();
             let file = String::from_utf8(file).unwrap();
             assert!(file.contains(r#"type="PolyData""#));

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use crate::action::PairSolution;
-use crate::formats::vtk::{Cells, DataArray, Location, VTK_POLYGON, write_grid};
+use crate::formats::vtk::{Cells, DataArray, Location, write_grid};
 use crate::mesh::DualMesh;
 
 /// Writes `dual.vtu`: the cells `D_a` of the dual mesh as polygons, with cell data `lambda` (the piecewise constant
@@ -27,13 +27,13 @@ pub fn write_dual_vtu(dual: &DualMesh, solution: &PairSolution, out: impl Write)
             points.len().saturating_sub(1)
         })
         .collect();
-    let polygons = Cells::new(VTK_POLYGON, cells().map(|cell| cell.map(|point| number[point])));
-    let at = dual.vertices().iter().copied();
+    let polygons = Cells::polygons(cells().map(|cell| cell.map(|point| number[point])));
+    let (at, count) = (dual.vertices(), dual.vertices().len());
     let data = [
-        DataArray::floats("lambda", at.clone().map(|a| solution.lambda()[a])),
-        DataArray::integers("vertex", at.clone()),
-        DataArray::flags("contact", at.map(|a| solution.contact()[a])),
-        DataArray::floats("area", (0..dual.vertices().len()).map(|k| dual.area(k))),
+        DataArray::floats("lambda", count, |k| solution.lambda()[at[k]]),
+        DataArray::integers("vertex", count, |k| at[k]),
+        DataArray::flags("contact", count, |k| solution.contact()[at[k]]),
+        DataArray::floats("area", count, |k| dual.area(k)),
     ];
     write_grid(out, &points, &polygons, &[(Location::Cells, &data)])
 }

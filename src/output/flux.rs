@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use crate::action::PairSolution;
 use crate::flux::Flux;
-use crate::formats::vtk::{Cells, DataArray, Location, VTK_TRIANGLE, write_grid};
+use crate::formats::vtk::{Cells, DataArray, Location, write_grid};
 use crate::mesh::SubTriangulation;
 
 /// Writes `flux.vtu`: the triangles of `S_h` with cell data `t1`, `t2` (the fluxes of both membranes at the barycentres,
@@ -21,15 +21,15 @@ pub fn write_flux_vtu(
 ) -> io::Result<()> {
     let mesh = sub.mesh();
     let (t1, t2) = (t1.cells(), t2.cells());
+    let (triangles, count) = (mesh.triangles(), mesh.triangles().len());
     let data = [
-        DataArray::vectors("t1", t1.value),
-        DataArray::vectors("t2", t2.value),
-        DataArray::floats("div_t1", t1.divergence),
-        DataArray::floats("div_t2", t2.divergence),
-        DataArray::floats("lambda", (0..mesh.triangles().len()).map(|t| solution.lambda()[sub.vertex_of(t)])),
+        DataArray::vectors("t1", count, |t| t1.value[t]),
+        DataArray::vectors("t2", count, |t| t2.value[t]),
+        DataArray::floats("div_t1", count, |t| t1.divergence[t]),
+        DataArray::floats("div_t2", count, |t| t2.divergence[t]),
+        DataArray::floats("lambda", count, |t| solution.lambda()[sub.vertex_of(t)]),
     ];
-    let triangles = Cells::new(VTK_TRIANGLE, mesh.triangles().iter().copied());
-    write_grid(out, mesh.points(), &triangles, &[(Location::Cells, &data)])
+    write_grid(out, mesh.points(), &Cells::triangles(triangles), &[(Location::Cells, &data)])
 }
 
 #[cfg(test)]

@@ -18,5 +18,5 @@ pub fn write_rim_vtp<'r>(
 ) -> io::Result<()> {
     let of_gap = |(gap, rim): (usize, &'r Rim)| rim.lines().iter().map(move |line| (gap, line.as_slice()));
     let (gaps, lines): (Vec<usize>, Vec<&[[f64; 2]]>) = rims.into_iter().flat_map(of_gap).unzip();
-    write_lines(out, &lines, &[DataArray::integers("gap", gaps)])
+    write_lines(out, &lines, &[DataArray::integers("gap", gaps.len(), |k| gaps[k])])
 }

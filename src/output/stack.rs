@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use crate::action::StackSolution;
 use crate::discretization::StackDiscretization;
 use crate::estimate::ErrorBound;
-use crate::formats::vtk::{Cells, DataArray, Location, VTK_TRIANGLE, write_grid};
+use crate::formats::vtk::{Cells, DataArray, Location, write_grid};
 use crate::mesh::Mesh;
 
 /// Writes `solution.vtu` of a stack: the mesh, with point data `u1` ... `uN`, `ceiling` and `floor` where they are; for each
@@ -23,51 +23,58 @@ pub fn write_stack_vtu(
     out: impl Write,
 ) -> io::Result<()> {
     let mesh = d.mesh();
+    let (vertices, triangles) = (mesh.points().len(), mesh.triangles());
     let displacements = (1..).zip(solution.displacement());
     let mut points: Vec<DataArray> =
-        displacements.map(|(i, u)| DataArray::floats(format!("u{i}"), u.iter().copied())).collect();
+        displacements.map(|(i, u)| DataArray::floats(format!("u{i}"), vertices, |a| u[a])).collect();
     for (name, obstacle) in ["ceiling", "floor"].into_iter().zip(d.obstacles()) {
-        points.extend(obstacle.map(|heights| DataArray::floats(name, heights.iter().copied())));
+        points.extend(obstacle.map(|heights| DataArray::floats(name, vertices, |a| heights[a])));
     }
     let several = solution.gaps().len() > 1;
     for gap in solution.gaps() {
         let named = |name: &str| if several { format!("{name}_{}", gap.number) } else { name.into() };
-        points.push(DataArray::floats(named("gap"), gap.gap.iter().copied()));
-        points.push(DataArray::floats(named("lambda"), gap.lambda.iter().copied()));
-        points.push(DataArray::floats(named("force"), gap.force.iter().copied()));
-        points.push(DataArray::floats(named("line_density"), gap.line_density.iter().copied()));
-        points.push(DataArray::flags(named("contact"), gap.contact.iter().copied()));
+        points.push(DataArray::floats(named("gap"), vertices, |a| gap.gap[a]));
+        points.push(DataArray::floats(named("lambda"), vertices, |a| gap.lambda[a]));
+        points.push(DataArray::floats(named("force"), vertices, |a| gap.force[a]));
+        points.push(DataArray::floats(named("line_density"), vertices, |a| gap.line_density[a]));
+        points.push(DataArray::flags(named("contact"), vertices, |a| gap.contact[a]));
     }
     let mut cells = Vec::new();
-    cells.extend(bound.map(|bound| {
-        DataArray::floats("error_indicator", bound.indicators.iter().map(|square| square.sqrt()))
-    }));
+    cells.extend(
+        bound.map(|bound| {
+            DataArray::floats("error_indicator", triangles.len(), |t| bound.indicators[t].sqrt())
+        }),
+    );
     if groups {
         points.extend(curves(mesh));
         cells.extend(regions(mesh));
     }
-    let triangles = Cells::new(VTK_TRIANGLE, mesh.triangles().iter().copied());
-    write_grid(out, mesh.points(), &triangles, &[(Location::Points, &points), (Location::Cells, &cells)])
+    write_grid(
+        out,
+        mesh.points(),
+        &Cells::triangles(triangles),
+        &[(Location::Points, &points), (Location::Cells, &cells)],
+    )
 }
 
 /// Whether a vertex lies on each curve.
-fn curves(mesh: &Mesh) -> impl Iterator<Item = DataArray> {
+fn curves(mesh: &Mesh) -> impl Iterator<Item = DataArray<'_>> {
     let names = mesh.groups().curves().iter();
     names.map(|name| {
         let mut on_curve = vec![false; mesh.points().len()];
         let edges = mesh.groups().curve(name).into_iter().flatten();
         edges.flatten().for_each(|a| on_curve[a] = true);
-        DataArray::flags(format!("curve {name}"), on_curve)
+        DataArray::flags(format!("curve {name}"), on_curve.len(), move |a| on_curve[a])
     })
 }
 
 /// Whether a triangle lies in each region.
-fn regions(mesh: &Mesh) -> impl Iterator<Item = DataArray> {
+fn regions(mesh: &Mesh) -> impl Iterator<Item = DataArray<'_>> {
     let names = mesh.groups().regions().iter();
     names.map(|name| {
         let mut in_region = vec![false; mesh.triangles().len()];
         mesh.groups().region(name).into_iter().flatten().for_each(|t| in_region[t] = true);
-        DataArray::flags(format!("region {name}"), in_region)
+        DataArray::flags(format!("region {name}"), in_region.len(), move |t| in_region[t])
     })
 }
 

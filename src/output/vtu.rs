@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use crate::action::PairSolution;
 use crate::estimate::ErrorBound;
-use crate::formats::vtk::{Cells, DataArray, Location, VTK_TRIANGLE, write_grid};
+use crate::formats::vtk::{Cells, DataArray, Location, write_grid};
 use crate::mesh::Mesh;
 
 /// Writes `solution.vtu`: the mesh, with point data `u1`, `u2`, `gap`, `lambda` (zero on the boundary) and `contact` (0 or
@@ -19,18 +19,22 @@ pub fn write_vtu(
     bound: &ErrorBound,
     out: impl Write,
 ) -> io::Result<()> {
-    let [u1, u2] = solution.displacement();
+    let ([u1, u2], vertices) = (solution.displacement(), mesh.points().len());
     let data = [
-        DataArray::floats("u1", u1.iter().copied()),
-        DataArray::floats("u2", u2.iter().copied()),
-        DataArray::floats("gap", solution.gap()),
-        DataArray::floats("lambda", solution.lambda().iter().copied()),
-        DataArray::flags("contact", solution.contact().iter().copied()),
+        DataArray::floats("u1", vertices, |a| u1[a]),
+        DataArray::floats("u2", vertices, |a| u2[a]),
+        DataArray::floats("gap", vertices, |a| u1[a] - u2[a]),
+        DataArray::floats("lambda", vertices, |a| solution.lambda()[a]),
+        DataArray::flags("contact", vertices, |a| solution.contact()[a]),
     ];
-    let cells = Cells::new(VTK_TRIANGLE, mesh.triangles().iter().copied());
-    let indicators =
-        [DataArray::floats("error_indicator", bound.indicators.iter().map(|square| square.sqrt()))];
-    write_grid(out, mesh.points(), &cells, &[(Location::Points, &data), (Location::Cells, &indicators)])
+    let triangles = mesh.triangles();
+    let indicators = [DataArray::floats("error_indicator", triangles.len(), |t| bound.indicators[t].sqrt())];
+    write_grid(
+        out,
+        mesh.points(),
+        &Cells::triangles(triangles),
+        &[(Location::Points, &data), (Location::Cells, &indicators)],
+    )
 }
 
 #[cfg(all(test, feature = "clarabel", feature = "pictures"))]

@@ -94,7 +94,7 @@ fn alone(picture: &MeshPicture, whole: &Window) -> Canvas {
     heading(&mut canvas, picture.title);
     legend(&mut canvas, picture, None);
     let corner = [LEFT + (size[0] - LEFT - RIGHT - width) / 2, TOP];
-    let boundary = boundary_edges(picture.mesh.triangles());
+    let boundary = boundary_edges(picture.mesh.points().len(), picture.mesh.triangles());
     let frame = place(&mut canvas, panel::meshes(picture, whole, &boundary), whole, corner);
     left_axis(&mut canvas, frame, whole);
     canvas
@@ -112,7 +112,7 @@ fn with_enlarged(
     let mut canvas = Canvas::new(size);
     heading(&mut canvas, picture.title);
     legend(&mut canvas, picture, sizes);
-    let boundary = boundary_edges(picture.mesh.triangles());
+    let boundary = boundary_edges(picture.mesh.points().len(), picture.mesh.triangles());
     let corner = [LEFT, TOP + (side - height) / 2];
     let domain = panel::domain(picture, overview, &boundary, sizes);
     let left = place(&mut canvas, domain, overview, corner);

@@ -4,6 +4,7 @@ mod action;
 mod bars;
 mod cells;
 mod cut;
+mod detail;
 mod domain;
 mod error;
 

@@ -12,11 +12,11 @@ use crate::cli::case::{CaseFile, SolverName};
 use crate::cli::failure::Failure;
 use crate::cli::run::clock::Clock;
 use crate::cli::run::files::{CHECKPOINT, HISTORY, LEVELS, MEMBRANES, MESH, Part, RIM, SOLUTION, SUMMARY};
-use crate::cli::run::folder::{Claim, Folder, Results};
+use crate::cli::run::folder::{Claim, Folder};
 use crate::cli::run::input::{self, Input};
 use crate::cli::run::levels::{GOES_ON, KEPT, Levels, MEMORY, TIME, failure, settings, too_late};
 use crate::cli::run::memory::Memory;
-use crate::cli::run::pictures::Pictures;
+use crate::cli::run::pictures::{Begun, Pictures};
 use crate::cli::run::progress::Progress;
 use crate::cli::run::setup::{Setup, check_solver, options, solver, too_early};
 use crate::cli::run::watch::Watch;
@@ -264,11 +264,16 @@ fn write_results(
     else {
         return Ok(Vec::new());
     };
-    let mesh = study.mesh();
     let mut results = folder.results(Part::Solution);
-    let mut left_out = write_solution(&mut results, case, (d, solution), Some(bound), pictures)?;
-    left_out.extend(write_mesh(&mut results, &case.title, mesh, solution, pictures)?);
-    left_out.extend(write_history(&mut results, &case.title, levels, pictures)?);
+    let shared = Arc::new(solution.clone());
+    let others = [
+        begin_mesh(&case.title, study.mesh(), solution, pictures),
+        begin_history(&case.title, levels, pictures),
+    ];
+    let mut left_out = write_solution(&mut results, case, (d, &shared), Some(bound), pictures)?;
+    for picture in others {
+        left_out.extend(picture.write(|file, bytes| results.write(file, |out| out.write_all(bytes)))?);
+    }
     let seconds = Seconds { bound: last.bound_seconds, ..Seconds::default() };
     let mut summary = Summary::new(&case.title, d, last.tolerance, Ok(solution), seconds, Some(Ok(bound)))
         .with_unused_groups(&setup.groups);
@@ -278,14 +283,8 @@ fn write_results(
     Ok(left_out)
 }
 
-/// The last mesh with its contact set.
-fn write_mesh(
-    results: &mut Results,
-    title: &str,
-    mesh: &Arc<Mesh>,
-    solution: &ContactSolution,
-    pictures: &Pictures,
-) -> Result<Vec<&'static str>, Failure> {
+/// Begins to draw the last mesh with its contact set.
+fn begin_mesh(title: &str, mesh: &Arc<Mesh>, solution: &ContactSolution, pictures: &Pictures) -> Begun {
     // A vertex of several gaps touches where one of them is closed.
     let mut contact = vec![false; mesh.points().len()];
     for gap in solution.gaps() {
@@ -298,16 +297,11 @@ fn write_mesh(
         let picture = MeshPicture { title: &title, mesh: &mesh, dual: &dual, contact: Some(&contact) };
         render_triangulation(&picture).map_err(|error| error.to_string())
     };
-    pictures.write(MESH, draw, |file, bytes| results.write(file, |out| out.write_all(bytes)))
+    pictures.begin(MESH, draw)
 }
 
-/// The bound, the error and the estimator of all levels.
-fn write_history(
-    results: &mut Results,
-    title: &str,
-    levels: &[AdaptiveLevel],
-    pictures: &Pictures,
-) -> Result<Vec<&'static str>, Failure> {
+/// Begins to draw the bound, the error and the estimator of all levels.
+fn begin_history(title: &str, levels: &[AdaptiveLevel], pictures: &Pictures) -> Begun {
     let (title, levels) = (title.to_owned(), levels.to_vec());
     let draw = move || {
         let bounds = values(&levels, |level| Some(level.bound));
@@ -328,7 +322,7 @@ fn write_history(
         });
         picture.map_err(|error| error.to_string())
     };
-    pictures.write(HISTORY, draw, |file, bytes| results.write(file, |out| out.write_all(bytes)))
+    pictures.begin(HISTORY, draw)
 }
 
 /// What is not known cannot be drawn.

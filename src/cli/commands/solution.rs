@@ -11,23 +11,29 @@ use crate::cli::run::pictures::Pictures;
 use crate::discretization::Discretization;
 use crate::estimate::ErrorBound;
 use crate::output::{write_rim_vtp, write_stack_vtu, write_vtu};
+use crate::pictures::Drawing;
 use crate::pictures::membranes::{self, Picture};
 use crate::pictures::stack::{self, StackPicture};
 
 /// The settings of a folder that holds one. Another mesh, solver, or tolerance for the same case takes the place of the one before.
 pub(super) const A_SOLUTION: &str = "a solution";
 
-/// Writes `solution.vtu`, `rim.vtp`, and the picture of the membranes if there is time. What was left out is returned.
+/// Writes `solution.vtu`, `rim.vtp`, and the picture of the membranes, drawn meanwhile, if there is time. What was left out is
+/// returned.
 pub(super) fn write_solution(
     results: &mut Results,
     case: &CaseFile,
-    (d, solution): (&Arc<Discretization>, &ContactSolution),
+    (d, solution): (&Arc<Discretization>, &Arc<ContactSolution>),
     bound: Option<&ErrorBound>,
     pictures: &Pictures,
 ) -> Result<Vec<&'static str>, Failure> {
+    let picture = pictures.begin(MEMBRANES, {
+        let (title, d, solution) = (case.title.clone(), Arc::clone(d), Arc::clone(solution));
+        move || draw(&title, &d, &solution)
+    });
     // The names of a mesh file are its author's; those of generators are known.
     let groups = matches!(case.mesh, MeshSource::File(_));
-    match (&**d, solution) {
+    match (&**d, &**solution) {
         (Discretization::Stack(d), ContactSolution::Stack(solution)) => {
             results.write(SOLUTION, |out| write_stack_vtu(d, solution, bound, groups, out))?;
         }
@@ -37,7 +43,7 @@ pub(super) fn write_solution(
         }
         _ => unreachable!("the solution is one of its discretization"),
     }
-    let rims: Vec<(usize, Rim)> = match solution {
+    let rims: Vec<(usize, Rim)> = match &**solution {
         ContactSolution::Pair(solution) => {
             vec![(1, Rim::new(d.mesh(), &solution.gap(), solution.contact()))]
         }
@@ -47,17 +53,19 @@ pub(super) fn write_solution(
         }
     };
     results.write(RIM, |out| write_rim_vtp(rims.iter().map(|(gap, rim)| (*gap, rim)), out))?;
-    let (title, d, solution) = (case.title.clone(), Arc::clone(d), solution.clone());
-    let draw = move || match (&*d, &solution) {
+    picture.write(|file, bytes| results.write(file, |out| out.write_all(bytes)))
+}
+
+fn draw(title: &str, d: &Discretization, solution: &ContactSolution) -> Result<Drawing, String> {
+    match (d, solution) {
         (Discretization::Stack(d), ContactSolution::Stack(solution)) => {
-            stack::render(&StackPicture::of(&title, d, solution)).map_err(|error| error.to_string())
+            stack::render(&StackPicture::of(title, d, solution)).map_err(|error| error.to_string())
         }
         (d, ContactSolution::Pair(solution)) => {
-            membranes::render(&Picture::of(&title, d.mesh(), solution)).map_err(|error| error.to_string())
+            membranes::render(&Picture::of(title, d.mesh(), solution)).map_err(|error| error.to_string())
         }
         _ => unreachable!("the solution is one of its discretization"),
-    };
-    pictures.write(MEMBRANES, draw, |file, bytes| results.write(file, |out| out.write_all(bytes)))
+    }
 }
 
 /// What to say of files that were left out.

@@ -53,12 +53,12 @@ pub(crate) fn run(arguments: &SolveArguments, watch: &Watch) -> Result<(), Failu
     match result {
         Ok(bounded) => {
             progress.stage("writing the results");
+            let polish = bounded.solution.statistics().polish;
             let summary =
-                write_results(&setup, &d, &bounded, seconds, (&folder, &clock, &pictures), arguments.dual)?;
+                write_results(&setup, &d, bounded, seconds, (&folder, &clock, &pictures), arguments.dual)?;
             drop(progress);
             if !arguments.case.quiet {
                 let unloaded = (1..=d.membranes()).all(|i| d.load(i).iter().all(|&load| load == 0.0));
-                let polish = bounded.solution.statistics().polish;
                 let files = files(&pictures, arguments.dual);
                 let table = table(&summary, polish, unloaded, folder.path(), files);
                 print(&(table + &setup.notes))?;
@@ -102,7 +102,7 @@ fn solve(
 fn write_results(
     setup: &Setup,
     d: &Arc<Discretization>,
-    bounded: &Bounded,
+    bounded: Bounded,
     seconds: Seconds,
     (folder, clock, pictures): (&Folder, &Clock, &Pictures),
     dual: bool,
@@ -110,16 +110,17 @@ fn write_results(
     let start = Instant::now();
     let title = &setup.case.title;
     let Bounded { solution, bound, tolerance, bound_seconds } = bounded;
+    let solution = Arc::new(solution);
     let mut results = folder.results(Part::Solution);
     let mut left_out = Vec::new();
     if let (true, Some(d), Some(solution)) = (dual, d.as_pair(), solution.as_pair()) {
         left_out.extend(write_dual(&mut results, &setup.case, d, solution, (clock, pictures))?);
     }
     let of_bound = bound.as_ref().ok();
-    left_out.extend(write_solution(&mut results, &setup.case, (d, solution), of_bound, pictures)?);
+    left_out.extend(write_solution(&mut results, &setup.case, (d, &solution), of_bound, pictures)?);
     let output = start.elapsed().as_secs_f64();
-    let seconds = Seconds { bound: *bound_seconds, output, ..seconds };
-    let mut summary = Summary::new(title, d, *tolerance, Ok(solution), seconds, Some(bound.as_ref()))
+    let seconds = Seconds { bound: bound_seconds, output, ..seconds };
+    let mut summary = Summary::new(title, d, tolerance, Ok(&solution), seconds, Some(bound.as_ref()))
         .with_unused_groups(&setup.groups);
     summary.left_out = left_out;
     results.write(SUMMARY, |out| summary.write(out))?;

@@ -1,6 +1,6 @@
 //! The time that a run may take.
 
-use std::sync::mpsc::{self, RecvTimeoutError};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::thread;
 use std::time::Instant;
 
@@ -55,18 +55,35 @@ impl Clock {
             && !self.allows(0.0)
     }
 
-    /// What `work` makes, or nothing when the time is over before: then it is not waited for, and ends with the program.
-    pub(crate) fn in_time<T: Send + 'static>(&self, work: impl FnOnce() -> T + Send + 'static) -> Option<T> {
-        let Some(left) = self.left() else { return Some(work()) };
-        if !self.allows(0.0) {
-            return None;
-        }
-        let (done, result) = mpsc::channel();
-        thread::spawn(move || {
-            // Nobody waits any longer for what comes too late.
-            let _ = done.send(work());
+    /// Begins work beside the run, unless the time is over.
+    pub(crate) fn begin<T: Send + 'static>(&self, work: impl FnOnce() -> T + Send + 'static) -> Begun<T> {
+        let result = self.allows(0.0).then(|| {
+            let (done, result) = mpsc::channel();
+            thread::spawn(move || {
+                // Nobody waits any longer for what comes too late.
+                let _ = done.send(work());
+            });
+            result
         });
-        match result.recv_timeout(left.duration()) {
+        Begun { clock: *self, result }
+    }
+}
+
+/// Work that has begun, or for which there was no time.
+pub(crate) struct Begun<T> {
+    clock: Clock,
+    result: Option<Receiver<T>>,
+}
+
+impl<T> Begun<T> {
+    /// What the work makes, or nothing when the time is over before: then it is not waited for, and ends with the program.
+    pub(crate) fn in_time(self) -> Option<T> {
+        let result = self.result?;
+        let made = match self.clock.left() {
+            None => result.recv().map_err(|_| RecvTimeoutError::Disconnected),
+            Some(left) => result.recv_timeout(left.duration()),
+        };
+        match made {
             Ok(made) => Some(made),
             Err(RecvTimeoutError::Timeout) => None,
             Err(RecvTimeoutError::Disconnected) => panic!("a thread beside the run is gone"),
@@ -100,11 +117,21 @@ mod tests {
 
     #[test]
     fn what_comes_too_late_is_not_waited_for() {
-        let slow = |milliseconds| move || thread::sleep(Duration::from_millis(milliseconds));
-        assert_eq!(Clock::new(None).in_time(slow(1)), Some(()));
-        assert_eq!(Clock::new(limit(60.0)).in_time(slow(1)), Some(()));
-        assert_eq!(Clock::new(limit(0.01)).in_time(slow(3_600_000)), None);
-        assert_eq!(Clock::new(limit(1e-9)).in_time(slow(0)), None, "nothing is begun");
-        assert_eq!(Clock::new(limit(1e19)).in_time(slow(1)), Some(()));
+        let made = |clock: Clock, milliseconds| {
+            clock.begin(move || thread::sleep(Duration::from_millis(milliseconds))).in_time()
+        };
+        assert_eq!(made(Clock::new(None), 1), Some(()));
+        assert_eq!(made(Clock::new(limit(60.0)), 1), Some(()));
+        assert_eq!(made(Clock::new(limit(0.01)), 3_600_000), None);
+        assert_eq!(made(Clock::new(limit(1e-9)), 0), None, "nothing is begun");
+        assert_eq!(made(Clock::new(limit(1e19)), 1), Some(()));
+    }
+
+    #[test]
+    fn work_goes_on_beside_the_run() {
+        let (say, heard) = mpsc::channel();
+        let begun = Clock::new(None).begin(move || heard.recv());
+        say.send("done").unwrap();
+        assert_eq!(begun.in_time(), Some(Ok("done")));
     }
 }

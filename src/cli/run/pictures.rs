@@ -1,6 +1,6 @@
 //! The pictures of a run: in the formats that were asked for, in the time that there is.
 
-use super::clock::Clock;
+use super::clock::{self, Clock};
 use super::files::{FORMATS, Picture};
 use crate::cli::args::PictureArguments;
 use crate::cli::failure::Failure;
@@ -25,23 +25,47 @@ impl Pictures {
         files.filter(|(format, _)| self.formats.contains(format)).map(|(_, file)| file).collect()
     }
 
-    /// Hands the bytes of each file of a picture to `write` if they are ready in time; else the names of the files are returned.
+    /// Begins to draw a picture, beside what the run does until it is [written](Begun::write).
+    pub(crate) fn begin(
+        &self,
+        picture: Picture,
+        draw: impl FnOnce() -> Result<Drawing, String> + Send + 'static,
+    ) -> Begun {
+        let (formats, files) = (self.formats.clone(), self.files(picture));
+        let encoded = move || {
+            let drawing = draw()?;
+            let encode = |format| drawing.encode(format).map_err(|error| error.to_string());
+            formats.into_iter().map(encode).collect()
+        };
+        let encoded = (!files.is_empty()).then(|| self.clock.begin(encoded));
+        Begun { files, encoded }
+    }
+
+    /// Draws a picture and [writes](Begun::write) it.
     pub(crate) fn write(
         &self,
         picture: Picture,
         draw: impl FnOnce() -> Result<Drawing, String> + Send + 'static,
+        write: impl FnMut(&'static str, &[u8]) -> Result<(), Failure>,
+    ) -> Result<Vec<&'static str>, Failure> {
+        self.begin(picture, draw).write(write)
+    }
+}
+
+/// A picture that is being drawn.
+pub(crate) struct Begun {
+    files: Vec<&'static str>,
+    encoded: Option<clock::Begun<Result<Vec<Vec<u8>>, String>>>,
+}
+
+impl Begun {
+    /// Hands the bytes of each file of the picture to `write` if they are ready in time; else the names of the files are returned.
+    pub(crate) fn write(
+        self,
         mut write: impl FnMut(&'static str, &[u8]) -> Result<(), Failure>,
     ) -> Result<Vec<&'static str>, Failure> {
-        let (formats, files) = (self.formats.clone(), self.files(picture));
-        if files.is_empty() {
-            return Ok(files);
-        }
-        let encoded = self.clock.in_time(move || {
-            let drawing = draw()?;
-            let encode = |format| drawing.encode(format).map_err(|error| error.to_string());
-            formats.into_iter().map(encode).collect::<Result<Vec<Vec<u8>>, String>>()
-        });
-        let Some(encoded) = encoded else { return Ok(files) };
+        let Self { files, encoded } = self;
+        let Some(encoded) = encoded.and_then(clock::Begun::in_time) else { return Ok(files) };
         let encoded = encoded.map_err(|error| Failure::Input(format!("{}: {error}", files[0])))?;
         files.iter().zip(&encoded).try_for_each(|(file, bytes)| write(file, bytes))?;
         Ok(Vec::new())

@@ -20,8 +20,12 @@ pub(crate) fn triangle(
     size: [usize; 2],
     mut paint: impl FnMut(usize, usize, [f64; 3]),
 ) {
-    let Some(gradients) = barycentric_gradients(corners) else { return };
     let bounds = [0, 1].map(|axis| extent(corners.map(|p| p[axis])));
+    // Most triangles of a fine mesh have no pixel.
+    if [0, 1].into_iter().any(|axis| pixel_range(bounds[axis], size[axis]).is_empty()) {
+        return;
+    }
+    let Some(gradients) = barycentric_gradients(corners) else { return };
     let [along, across] = directions(bounds);
     let slopes = gradients.map(|gradient| gradient[along]);
     let lengths = slopes.map(|slope| 1.0 / slope);

@@ -71,7 +71,7 @@ impl Layer {
         };
         let projected: Vec<([f64; 2], f64)> = (0..scene.domain.vertex_count()).map(project).collect();
         let spacing = [0, 1].map(|k| 1.0 / (GRID * view.sides()[k]).round().max(2.0));
-        for corners in scene.domain.triangles() {
+        for corners in scene.domain.drawn() {
             let flat = corners.map(|v| projected[v].0);
             let Some(gradients) = barycentric_gradients(flat) else { continue };
             let places = corners.map(in_box);
@@ -214,7 +214,7 @@ fn grid_line(at: f64, spacing: f64, steepness: f64) -> f64 {
 /// The brightness of a membrane at each vertex, from the mean slope of the triangles around it.
 fn brightness(scene: &Scene, view: &View, membrane: usize) -> Vec<f32> {
     let mut sums = vec![[0.0; 3]; scene.domain.vertex_count()];
-    for corners in scene.domain.triangles() {
+    for corners in scene.domain.drawn() {
         let places = corners.map(|v| view.in_box(scene.domain.place(v), scene.levels(v)[membrane]));
         let Some(gradients) = barycentric_gradients(places.map(|[s, t, _]| [s, t])) else { continue };
         let slope = [0, 1].map(|axis| (0..3).map(|i| gradients[i][axis] * places[i][2]).sum::<f64>());

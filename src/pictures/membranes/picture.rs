@@ -1,7 +1,9 @@
 //! What is drawn.
 
+use std::sync::Arc;
+
 use crate::action::PairSolution;
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, Parents};
 
 /// Width and height of the picture in pixels.
 pub const SIZE: [usize; 2] = [1800, 1330];
@@ -15,6 +17,9 @@ pub struct Picture<'a> {
     pub points: &'a [[f64; 2]],
     /// The triangles, as indices into `points`.
     pub triangles: &'a [[usize; 3]],
+    /// The refinements that made the mesh, as [`Mesh::ancestry`](crate::mesh::Mesh::ancestry); none when they are not known. Of more
+    /// triangles than can be seen, those of a coarser mesh are drawn.
+    pub ancestry: &'a [Arc<Parents>],
     /// Membrane 1, `u1`.
     pub upper: &'a [f64],
     /// Membrane 2, `u2`.
@@ -33,6 +38,7 @@ impl<'a> Picture<'a> {
             title,
             points: mesh.points(),
             triangles: mesh.triangles(),
+            ancestry: mesh.ancestry(),
             upper,
             lower,
             lambda: solution.lambda(),

@@ -21,7 +21,7 @@ pub(super) struct Scene<'a> {
 impl<'a> Scene<'a> {
     /// Checks the picture's data and finds its ranges.
     pub(super) fn new(picture: &'a Picture<'a>) -> Result<Scene<'a>, PictureError> {
-        let domain = Domain::new(picture.points, picture.triangles)?;
+        let domain = Domain::new(picture.points, picture.triangles, picture.ancestry)?;
         domain.check_length("contact", picture.contact.len())?;
         for (name, values) in [("u1", picture.upper), ("u2", picture.lower), ("lambda", picture.lambda)] {
             domain.check_values(name, values)?;

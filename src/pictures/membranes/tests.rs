@@ -1,4 +1,5 @@
 use super::*;
+use crate::mesh::{Pattern, rectangle};
 use crate::pictures::drawing::axis::{Axis, times};
 use crate::pictures::drawing::canvas::{Anchor, Canvas, FINE};
 use crate::pictures::drawing::color::{self, INK};
@@ -77,6 +78,7 @@ impl Solution {
             title,
             points: &self.points,
             triangles: &self.triangles,
+            ancestry: &[],
             upper: &self.upper,
             lower: &self.lower,
             lambda: &self.lambda,
@@ -156,6 +158,38 @@ fn a_contact_region_smaller_than_a_pixel_is_on_the_map() {
     let shown = |wanted: &dyn Fn(usize) -> bool| map.profile(1, wanted).iter().sum::<usize>();
     assert_eq!(shown(&|vertex| scene.action.in_contact(vertex)), 1);
     assert_eq!(shown(&|vertex| vertex == (cells + 1) * 281 + 68), 0);
+}
+
+/// Of more triangles than can be seen, those of a coarser mesh are drawn.
+#[test]
+fn a_picture_of_a_coarser_mesh_looks_the_same_and_shows_what_that_does_not_know() {
+    let cells = 1024;
+    let gap = |x: f64, y: f64| (x - 0.5).hypot(y - 0.5) - 0.3;
+    let mesh = rectangle([0.0; 2], [1.0; 2], [cells; 2], Pattern::Right).expect("a mesh");
+    let mut solution =
+        Solution { triangles: mesh.triangles().to_vec(), ..Solution::new(cells, 1.0, |_, _| true, gap) };
+    // A vertex of the fine mesh only.
+    let speck = (cells + 1) * 101 + 67;
+    assert_eq!(mesh.points()[speck], solution.points[speck]);
+    solution.contact[speck] = true;
+    let fine = solution.picture("");
+    let coarse = Picture { ancestry: mesh.ancestry(), ..fine };
+    let [of_fine, of_coarse] = [&fine, &coarse].map(|picture| Scene::new(picture).expect("valid data"));
+    assert!(of_coarse.domain.drawn().len() == of_fine.domain.drawn().len() / 4);
+    assert!(of_coarse.domain.drawn().iter().flatten().all(|&v| v != speck));
+    let map = Map::new(&of_coarse, MAP);
+    assert!(map.profile(1, |vertex| vertex == speck).iter().sum::<usize>() > 0);
+    // All figures are those of the fine mesh.
+    assert_eq!(of_fine.action.share, of_coarse.action.share);
+    assert_eq!(cut(&of_fine, &Map::new(&of_fine, MAP)).place, cut(&of_coarse, &map).place);
+
+    let image =
+        |picture| Image::decode(&render(picture).expect("valid data").encode(Format::Png).expect("an image"));
+    let [fine, coarse] = [&fine, &coarse].map(image);
+    let pairs = || fine.pixels.iter().zip(&coarse.pixels);
+    let far = |(p, q): &(&color::Rgb, &color::Rgb)| (0..3).any(|k| p[k].abs_diff(q[k]) > 64);
+    let (differing, far) = (pairs().filter(|(p, q)| p != q).count(), pairs().filter(far).count());
+    assert!(differing > 0 && far < fine.pixels.len() / 1000, "{differing}, {far} of {}", fine.pixels.len());
 }
 
 #[test]
@@ -288,6 +322,10 @@ fn unused_vertices_change_nothing() {
 fn wrong_data_is_an_error_in_one_line() {
     let good = Solution::disk();
     let short = Solution { lambda: vec![0.0; 3], ..good.clone() };
+    let mesh = rectangle([0.0; 2], [1.0; 2], [4; 2], Pattern::Right).expect("a mesh");
+    let other = Picture { ancestry: mesh.ancestry(), ..good.picture("") };
+    let message = render(&other).expect_err("the ancestry of another mesh").to_string();
+    assert!(message.contains("ancestry has 25 values for 1089 vertices"), "{message}");
     let beyond = Solution { triangles: vec![[0, 1, 99_999]], ..good.clone() };
     let empty = Solution { triangles: Vec::new(), ..good.clone() };
     let infinite = Solution { upper: vec![f64::INFINITY; good.upper.len()], ..good.clone() };

@@ -41,15 +41,22 @@ impl Cells {
             [x * size[0] as f64, (1.0 - y) * size[1] as f64]
         };
         let mut vertex = vec![OUTSIDE; size[0] * size[1]];
-        for corners in domain.triangles() {
+        for corners in domain.drawn() {
             raster::triangle(corners.map(|v| raster::on_grid(at(v))), size, |column, row, weights| {
                 vertex[row * size[0] + column] = corners[raster::nearest_corner(weights)];
             });
         }
+        let pixel = |v: usize| {
+            let [column, row] = at(v).map(|at| at.max(0.0) as usize);
+            row.min(size[1] - 1) * size[0] + column.min(size[0] - 1)
+        };
+        // Of triangles larger than those that there are not all vertices have been asked.
+        if domain.is_simplified() {
+            domain.used().iter().for_each(|&v| vertex[pixel(v)] = v);
+        }
         // A dual cell in contact may be smaller than a pixel: its vertex is shown in any case.
         for &v in domain.triangles().iter().flatten().filter(|&&v| marked(v)) {
-            let [column, row] = at(v).map(|at| at.max(0.0) as usize);
-            vertex[row.min(size[1] - 1) * size[0] + column.min(size[0] - 1)] = v;
+            vertex[pixel(v)] = v;
         }
         Cells { frame, size, vertex }
     }

@@ -1,7 +1,12 @@
 //! The checked mesh of a picture.
 
+use std::borrow::Cow;
+use std::sync::Arc;
+
+use super::detail::drawn;
 use super::error::PictureError;
 use crate::geometry::twice_signed_area;
+use crate::mesh::Parents;
 use crate::pictures::drawing::axis::Axis;
 use crate::pictures::drawing::outline::boundary_edges;
 
@@ -11,28 +16,48 @@ const LARGEST: f64 = 1e305;
 /// The domain in its bounding rectangle, whose sides both have length 1.
 pub(crate) struct Domain<'a> {
     triangles: &'a [[usize; 3]],
+    drawn: Cow<'a, [[usize; 3]]>,
     /// The vertices of triangles, each once, in ascending order.
     used: Vec<usize>,
     places: Vec<[f64; 2]>,
     /// The axes of x and y, over the vertices of triangles.
     pub(crate) plane: [Axis; 2],
-    /// The edges of one triangle only.
+    /// The edges of one triangle only, of those that are drawn.
     pub(crate) boundary: Vec<[usize; 2]>,
 }
 
 impl<'a> Domain<'a> {
-    /// Checks the mesh.
-    pub(crate) fn new(points: &[[f64; 2]], triangles: &'a [[usize; 3]]) -> Result<Domain<'a>, PictureError> {
+    /// Checks the mesh. With the refinements that made it, no more triangles are drawn than can be seen.
+    pub(crate) fn new(
+        points: &[[f64; 2]],
+        triangles: &'a [[usize; 3]],
+        ancestry: &[Arc<Parents>],
+    ) -> Result<Domain<'a>, PictureError> {
+        let made = ancestry.last().map_or(points.len(), |parents| parents.ends().len());
+        check_length("ancestry", made, points.len())?;
         let used = used_vertices(points.len(), triangles)?;
         check_finite("x", &used, |v| points[v][0])?;
         check_finite("y", &used, |v| points[v][1])?;
         let plane = [0, 1].map(|axis| Axis::over(used.iter().map(|&v| points[v][axis]), false));
         let places = points.iter().map(|&[x, y]| [plane[0].place(x), plane[1].place(y)]).collect();
-        Ok(Domain { triangles, used, places, plane, boundary: boundary_edges(triangles) })
+        let drawn = drawn(triangles, ancestry);
+        let boundary = boundary_edges(points.len(), &drawn);
+        Ok(Domain { triangles, drawn, used, places, plane, boundary })
     }
 
+    /// All triangles.
     pub(crate) fn triangles(&self) -> &'a [[usize; 3]] {
         self.triangles
+    }
+
+    /// The triangles that are drawn: these, or, where they are too many to be seen, larger ones that they are parts of.
+    pub(crate) fn drawn(&self) -> &[[usize; 3]] {
+        &self.drawn
+    }
+
+    /// Whether larger triangles are drawn.
+    pub(crate) fn is_simplified(&self) -> bool {
+        matches!(self.drawn, Cow::Owned(_))
     }
 
     /// The vertices of triangles, each once, in ascending order.
@@ -78,18 +103,21 @@ impl<'a> Domain<'a> {
 
     /// One value per vertex.
     pub(crate) fn check_length(&self, name: &str, found: usize) -> Result<(), PictureError> {
-        let expected = self.vertex_count();
-        if found == expected {
-            Ok(())
-        } else {
-            Err(PictureError::Length { name: name.to_owned(), found, expected })
-        }
+        check_length(name, found, self.vertex_count())
     }
 
     /// One value per vertex, each finite where a triangle uses it.
     pub(crate) fn check_values(&self, name: &str, values: &[f64]) -> Result<(), PictureError> {
         self.check_length(name, values.len())?;
         check_finite(name, &self.used, |v| values[v])
+    }
+}
+
+fn check_length(name: &str, found: usize, expected: usize) -> Result<(), PictureError> {
+    if found == expected {
+        Ok(())
+    } else {
+        Err(PictureError::Length { name: name.to_owned(), found, expected })
     }
 }
 

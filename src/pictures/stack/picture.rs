@@ -1,7 +1,10 @@
 //! What is drawn.
 
+use std::sync::Arc;
+
 use crate::action::StackSolution;
 use crate::discretization::StackDiscretization;
+use crate::mesh::Parents;
 
 /// Width of the picture in pixels.
 pub const WIDTH: usize = 1800;
@@ -15,6 +18,9 @@ pub struct StackPicture<'a> {
     pub points: &'a [[f64; 2]],
     /// The triangles, as indices into `points`.
     pub triangles: &'a [[usize; 3]],
+    /// The refinements that made the mesh, as [`Mesh::ancestry`](crate::mesh::Mesh::ancestry); none when they are not known. Of more
+    /// triangles than can be seen, those of a coarser mesh are drawn.
+    pub ancestry: &'a [Arc<Parents>],
     /// The displacements `u_1 >= ... >= u_N`.
     pub membranes: Vec<&'a [f64]>,
     /// The heights of ceiling and floor.
@@ -49,6 +55,7 @@ impl<'a> StackPicture<'a> {
             title,
             points: d.mesh().points(),
             triangles: d.mesh().triangles(),
+            ancestry: d.mesh().ancestry(),
             membranes: solution.displacement().iter().map(Vec::as_slice).collect(),
             obstacles: d.obstacles(),
             gaps: gaps.collect(),

@@ -47,7 +47,7 @@ pub(super) struct Gap<'a> {
 impl<'a> Scene<'a> {
     /// Checks the picture's data.
     pub(super) fn new(picture: &StackPicture<'a>) -> Result<Scene<'a>, PictureError> {
-        let domain = Domain::new(picture.points, picture.triangles)?;
+        let domain = Domain::new(picture.points, picture.triangles, picture.ancestry)?;
         if picture.membranes.is_empty() {
             return Err(PictureError::NoMembranes);
         }

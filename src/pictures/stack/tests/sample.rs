@@ -104,6 +104,7 @@ impl Stack {
             title: "",
             points: &self.points,
             triangles: &self.triangles,
+            ancestry: &[],
             membranes: self.membranes.iter().map(Vec::as_slice).collect(),
             obstacles: [self.ceiling.as_deref(), self.floor.as_deref()],
             gaps: self.gaps.iter().map(Gap::picture).collect(),
