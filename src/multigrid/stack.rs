@@ -14,6 +14,8 @@ mod partition;
 mod reduced;
 mod settle;
 mod sweep;
+#[cfg(test)]
+mod tests;
 
 pub(crate) use cycles::{MAX_CYCLES, StackGoal, solve};
 pub(crate) use levels::StackLevels;

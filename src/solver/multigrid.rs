@@ -14,13 +14,17 @@ use crate::qp::Status;
 
 const NAME: &str = "multigrid";
 
-/// The pair decoupled, both halves by multigrid, one on each of two threads; or one membrane with at most one obstacle.
+/// The pair decoupled, both halves by multigrid, one on each of two threads; one membrane with at most one obstacle; or any other
+/// stack, all membranes at once.
 ///
 /// Truncated nonsmooth Newton multigrid for the gap, plain multigrid for the sum, on the refinements that made the mesh and
 /// on algebraic levels below them; on algebraic levels alone where it stalls on those, as on stretched triangles; nested
 /// iteration from the coarsest level. The cost of a cycle is linear, and the number
 /// of cycles does not depend on the size of the mesh. The energy falls in every cycle. It ends when the contact set stays and
 /// the residuals are within the tolerance. Results do not depend on the number of threads.
+///
+/// In a stack, membranes that are pressed together move as one in the corrections, which are a few steps of conjugate gradients with
+/// a cycle as their preconditioner.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Multigrid;
 

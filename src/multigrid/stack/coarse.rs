@@ -2,13 +2,15 @@
 
 use sprs::CsMat;
 
-use super::galerkin::galerkin;
+use super::galerkin::Galerkin;
 use super::level::StackLevel;
 use super::levels::StackLevels;
+use super::matrix::BlockMatrix;
 use super::partition::Partition;
 use super::reduced::Reduced;
 use crate::multigrid::cholesky::{Cholesky, NotFactored};
 use crate::multigrid::direct::raised;
+use crate::multigrid::hierarchy::Transfer;
 
 /// The coarser levels with their vectors, over the entries of each; those that are no blocks stay zero.
 pub(super) struct CoarseLevels<'l> {
@@ -35,28 +37,64 @@ impl<'l> CoarseLevels<'l> {
         }
     }
 
-    /// Follows the partition of the level `finest`.
-    pub(super) fn update(
+    /// Another level becomes the finest one, on which nothing moves yet.
+    pub(super) fn restart(&mut self, finest: usize) {
+        let n = self.levels.membranes();
+        for l in 0..finest {
+            let rows = self.levels.hierarchy().levels()[l].pattern.rows();
+            self.partitions[l] = Partition::new(rows, n);
+            self.matrices[l] = Reduced::new(rows, n);
+            self.x[l].fill(0.0);
+        }
+        self.direct = None;
+    }
+
+    /// Follows the partition of the level `finest`, which has `changed`.
+    ///
+    /// A row changes with the blocks at its own vertex and its neighbours, and with the finer rows that it is made of.
+    pub(super) fn follow(
         &mut self,
         finest: usize,
         problem: &StackLevel,
         partition: &Partition,
+        changed: &[u32],
     ) -> Result<(), NotFactored> {
+        let n = self.levels.membranes();
+        let mut marks = Marks::default();
+        let mut changed = changed.to_vec();
+        let mut rows = marks.with_neighbours(&changed, &problem.matrix);
         for l in (0..finest).rev() {
             let transfer = &self.levels.hierarchy().levels()[l + 1].transfer;
-            let held = self.levels.held(l);
-            if l + 1 == finest {
-                self.partitions[l] = partition.coarsened(transfer, held);
-                self.matrices[l] = galerkin((&problem.matrix, partition), transfer, &self.partitions[l]);
-            } else {
-                let (below, above) = self.partitions.split_at_mut(l + 1);
-                below[l] = above[0].coarsened(transfer, held);
-                self.matrices[l] = galerkin((&self.matrices[l + 1], &above[0]), transfer, &below[l]);
+            let touched = marks.parents(&changed, transfer);
+            let (below, above) = self.partitions.split_at_mut(l + 1);
+            let fine = if l + 1 == finest { partition } else { &above[0] };
+            changed = below[l].follow(fine, transfer, self.levels.held(l), &touched);
+            for &a in &changed {
+                self.x[l][a as usize * n..][..n].fill(0.0);
             }
-            self.x[l].fill(0.0);
+            let mut dirty = marks.parents(&rows, transfer);
+            dirty.extend(marks.with_neighbours(&changed, &self.levels.problem(l.max(1)).matrix));
+            dirty.sort_unstable();
+            dirty.dedup();
+            let coarse = &below[l];
+            let (reduced, finer) = self.matrices.split_at_mut(l + 1);
+            if l + 1 == finest {
+                Galerkin { matrix: &problem.matrix, fine, transfer, coarse }.renew(&mut reduced[l], &dirty);
+            } else {
+                Galerkin { matrix: &finer[0], fine, transfer, coarse }.renew(&mut reduced[l], &dirty);
+            }
+            rows = dirty;
         }
-        self.direct = Some(Direct::new(&self.matrices[0])?);
+        if self.direct.is_none() || !rows.is_empty() {
+            self.direct = Some(Direct::new(&self.matrices[0], n)?);
+        }
         Ok(())
+    }
+
+    /// The matrices of all levels.
+    #[cfg(test)]
+    pub(super) fn clone_matrices(&self) -> Vec<Reduced> {
+        self.matrices.clone()
     }
 
     /// Adds to `c` the correction for the functional `r`, of which no part is on blocks that do not move.
@@ -138,40 +176,72 @@ fn for_blocks(partition: &Partition, a: usize, mut visit: impl FnMut(usize, usiz
     }
 }
 
+/// Sets of rows, in order.
+#[derive(Default)]
+struct Marks(Vec<bool>);
+
+impl Marks {
+    /// Those that `visit` names.
+    fn collect(&mut self, count: usize, visit: impl FnOnce(&mut dyn FnMut(usize))) -> Vec<u32> {
+        self.0.clear();
+        self.0.resize(count, false);
+        visit(&mut |a| self.0[a] = true);
+        (0..count as u32).filter(|&a| self.0[a as usize]).collect()
+    }
+
+    /// These rows, and those that are coupled to them.
+    fn with_neighbours(&mut self, rows: &[u32], matrix: &BlockMatrix) -> Vec<u32> {
+        self.collect(matrix.rows(), |mark| {
+            for &a in rows {
+                mark(a as usize);
+                matrix.neighbours(a as usize).iter().for_each(|&b| mark(b as usize));
+            }
+        })
+    }
+
+    /// The rows of the coarser level that depend on these.
+    fn parents(&mut self, rows: &[u32], transfer: &Transfer) -> Vec<u32> {
+        self.collect(transfer.coarse_rows(), |mark| {
+            rows.iter().for_each(|&i| transfer.for_each_parent(i as usize, |a, _| mark(a)));
+        })
+    }
+}
+
 /// The rows of the coarsest matrix that are not empty, factored.
 struct Direct {
     cholesky: Option<Cholesky>,
-    rows: Vec<u32>,
+    entries: Vec<u32>,
 }
 
 impl Direct {
-    fn new(matrix: &Reduced) -> Result<Self, NotFactored> {
-        let rows: Vec<u32> =
-            (0..matrix.rows() as u32).filter(|&i| matrix.diagonal[i as usize] != 0.0).collect();
-        let mut number = vec![0; matrix.rows()];
-        (0..).zip(&rows).for_each(|(k, &i)| number[i as usize] = k);
+    fn new(matrix: &Reduced, n: usize) -> Result<Self, NotFactored> {
+        let diagonal = |entry: usize| matrix.diagonal(entry / n, entry);
+        let entries: Vec<u32> =
+            (0..matrix.entries() as u32).filter(|&i| diagonal(i as usize) != 0.0).collect();
+        let mut number = vec![0; matrix.entries()];
+        (0..).zip(&entries).for_each(|(k, &i)| number[i as usize] = k);
         let (mut start, mut columns, mut values) = (vec![0], Vec::new(), Vec::new());
-        for (k, &i) in rows.iter().enumerate() {
-            let of_row = matrix.row(i as usize).filter(|&(j, _)| matrix.diagonal[j] != 0.0);
+        for (k, entry) in entries.iter().map(|&entry| entry as usize).enumerate() {
+            let of_row = matrix.row(entry / n, entry).filter(|&(j, _)| diagonal(j) != 0.0);
             let mut row: Vec<(usize, f64)> = of_row.map(|(j, value)| (number[j], value)).collect();
-            row.push((k, raised(matrix.diagonal[i as usize])));
+            row.push((k, raised(diagonal(entry))));
             row.sort_unstable_by_key(|&(j, _)| j);
             columns.extend(row.iter().map(|&(j, _)| j));
             values.extend(row.iter().map(|&(_, value)| value));
             start.push(columns.len());
         }
-        let size = rows.len();
+        let size = entries.len();
         let cholesky = match size {
             0 => None,
             _ => Some(Cholesky::new(CsMat::new((size, size), start, columns, values))?),
         };
-        Ok(Self { cholesky, rows })
+        Ok(Self { cholesky, entries })
     }
 
     fn solve(&self, b: &[f64], x: &mut [f64]) -> Result<(), NotFactored> {
         let Some(cholesky) = &self.cholesky else { return Ok(()) };
-        let b: Vec<f64> = self.rows.iter().map(|&i| b[i as usize]).collect();
-        for (&i, value) in self.rows.iter().zip(cholesky.solve(&b)?) {
+        let b: Vec<f64> = self.entries.iter().map(|&i| b[i as usize]).collect();
+        for (&i, value) in self.entries.iter().zip(cholesky.solve(&b)?) {
             x[i as usize] = value;
         }
         Ok(())

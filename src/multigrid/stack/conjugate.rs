@@ -8,7 +8,7 @@ use crate::multigrid::cholesky::NotFactored;
 use crate::parallel::sums;
 
 /// Steps for a correction: more would solve a linear system whose contact set is not right yet.
-const STEPS: usize = 3;
+const STEPS: usize = 10;
 
 /// A step is the last when the preconditioned residual, squared, has fallen to this fraction.
 const ENOUGH: f64 = 1e-3;
@@ -67,7 +67,7 @@ impl Conjugate {
 }
 
 /// A symmetric cycle for `K z = r`.
-fn precondition(
+pub(super) fn precondition(
     (l, level): (usize, &StackLevel),
     sweeps: &mut Sweeps,
     coarse: &mut CoarseLevels,

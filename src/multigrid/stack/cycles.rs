@@ -110,8 +110,6 @@ struct Cycles<'c, 'l> {
     coarse: &'c mut CoarseLevels<'l>,
     partition: Partition,
     changed: Vec<u32>,
-    /// Whether the coarser levels know a partition of this level.
-    is_prepared: bool,
     x: Vec<f64>,
     r: Vec<f64>,
     conjugate: Conjugate,
@@ -126,6 +124,7 @@ impl<'c, 'l> Cycles<'c, 'l> {
         let mut pool = Pool::new(n);
         x.chunks_exact_mut(n).enumerate().for_each(|(a, x)| level.project(a, x, &mut pool));
         let entries = x.len();
+        coarse.restart(l);
         Self {
             l,
             level,
@@ -133,7 +132,6 @@ impl<'c, 'l> Cycles<'c, 'l> {
             coarse,
             partition: Partition::new(level.rows(), n),
             changed: Vec::new(),
-            is_prepared: false,
             x,
             r: vec![0.0; entries],
             conjugate: Conjugate::new(entries),
@@ -194,10 +192,7 @@ struct Measured<'m, 'c, 'l>(&'m mut Cycles<'c, 'l>, Measure<'m>);
 impl Cycle for Measured<'_, '_, '_> {
     fn cycle(&mut self, _: f64) -> Result<Found, NotFactored> {
         let Self(cycles, measure) = self;
-        if !cycles.changed.is_empty() || !cycles.is_prepared {
-            cycles.coarse.update(cycles.l, cycles.level, &cycles.partition)?;
-            cycles.is_prepared = true;
-        }
+        cycles.coarse.follow(cycles.l, cycles.level, &cycles.partition, &cycles.changed)?;
         cycles.correct()?;
         for _ in 0..SWEEPS {
             cycles.sweeps.relax(&mut cycles.x, true);

@@ -85,45 +85,65 @@ impl Partition {
         parts.map(move |(first, len)| PartitionChunk { membranes, first, len, old: Vec::new() })
     }
 
-    /// The partition of the coarser level, where `held` entries do not move: membranes move as one where they do so at all vertices
-    /// that a coarse hat function reaches. The coarse functions of two such membranes are the same.
-    pub(super) fn coarsened(&self, transfer: &Transfer, held: &[bool]) -> Self {
+    /// Follows the partition of the finer level at the `touched` vertices: where that has changed something here.
+    ///
+    /// Membranes move as one where they do so at all vertices that a coarse hat function reaches: the coarse functions of two such
+    /// membranes are the same. `held` entries do not move.
+    pub(super) fn follow(
+        &mut self,
+        fine: &Self,
+        transfer: &Transfer,
+        held: &[bool],
+        touched: &[u32],
+    ) -> Vec<u32> {
         let n = self.membranes;
-        let mut coarse = Self::new(transfer.coarse_rows(), n);
-        let chunks = coarse.first.par_chunks_mut(BLOCK * n).zip(coarse.len.par_chunks_mut(BLOCK * n));
-        chunks.enumerate().for_each(|(k, (first, len))| {
-            let (mut moves, mut joined) = (vec![false; n], vec![false; n]);
-            for (a, (first, len)) in (k * BLOCK..).zip(first.chunks_mut(n).zip(len.chunks_mut(n))) {
-                moves.fill(false);
-                joined.fill(true);
-                for (i, _) in transfer.children(a) {
-                    for p in 0..n {
-                        let moves_here = self.len[self.block(i, p)] != 0;
-                        moves[p] |= moves_here;
-                        // With the one above: in one block, or neither moves.
-                        joined[p] &= p > 0
-                            && (self.block(i, p) == self.block(i, p - 1)
-                                || !moves_here && self.len[self.block(i, p - 1)] == 0);
-                    }
-                }
-                let held = &held[a * n..][..n];
-                let mut blocks = Blocks { first, len };
-                blocks.clear();
-                let is_free = |p: usize| moves[p] && !held[p];
-                let mut p = 0;
-                while p < n {
-                    let start = p;
-                    p += 1;
-                    if is_free(start) {
-                        while p < n && is_free(p) && joined[p] {
-                            p += 1;
-                        }
-                        blocks.add(start, p);
+        let lens_of = |part: &[u32]| -> Vec<u16> {
+            let mut lens = vec![0; part.len() * n];
+            for (&a, lens) in part.iter().zip(lens.chunks_exact_mut(n)) {
+                fine.common_blocks(transfer, a as usize, &held[a as usize * n..][..n], lens);
+            }
+            lens
+        };
+        let all_lens: Vec<Vec<u16>> = touched.par_chunks(BLOCK).map(lens_of).collect();
+        let mut changed = Vec::new();
+        for (part, lens) in touched.chunks(BLOCK).zip(&all_lens) {
+            for (&a, lens) in part.iter().zip(lens.chunks_exact(n)) {
+                if self.lens(a as usize) != lens {
+                    changed.push(a);
+                    let range = a as usize * n..(a as usize + 1) * n;
+                    let mut blocks =
+                        Blocks { first: &mut self.first[range.clone()], len: &mut self.len[range] };
+                    blocks.clear();
+                    for (start, &len) in lens.iter().enumerate().filter(|(_, len)| **len != 0) {
+                        blocks.add(start, start + len as usize);
                     }
                 }
             }
-        });
-        coarse
+        }
+        changed
+    }
+
+    /// What moves as one on all vertices that the hat function of a coarse one reaches: the lengths of the blocks.
+    fn common_blocks(&self, transfer: &Transfer, a: usize, held: &[bool], lens: &mut [u16]) {
+        let moves_at = |i: usize, p: usize| self.len[self.block(i, p)] != 0;
+        let moves = |p: usize| !held[p] && transfer.children(a).any(|(i, _)| moves_at(i, p));
+        // With the one above: everywhere in one block, or neither moves.
+        let is_joined = |p: usize| {
+            let is_one =
+                |i: usize| self.block(i, p) == self.block(i, p - 1) || !moves_at(i, p) && !moves_at(i, p - 1);
+            transfer.children(a).all(|(i, _)| is_one(i))
+        };
+        let mut p = 0;
+        while p < lens.len() {
+            let start = p;
+            p += 1;
+            if moves(start) {
+                while p < lens.len() && is_joined(p) && moves(p) {
+                    p += 1;
+                }
+                lens[start] = (p - start) as u16;
+            }
+        }
     }
 }
 

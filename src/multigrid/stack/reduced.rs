@@ -1,58 +1,142 @@
 //! The matrices of coarser levels: rows are the blocks that move.
 
 use super::partition::Partition;
-use crate::multigrid::hierarchy::Rows;
+use crate::parallel::prelude::*;
 
-/// A symmetric matrix over the entries of a level, in compressed rows; the rows of entries that are no blocks are empty.
-#[derive(Debug, Clone, Default)]
+/// Parts that share the memory in which rows are made.
+const PARTS: usize = 4;
+
+/// Rows of a level that are kept together.
+const ROWS: usize = 1024;
+
+/// A symmetric matrix over the entries of a level; the rows of entries that are no blocks are empty.
+#[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Reduced {
-    pub(super) start: Vec<u32>,
-    pub(super) column: Vec<u32>,
-    pub(super) value: Vec<f64>,
-    pub(super) diagonal: Vec<f64>,
+    /// The entries of [`ROWS`] rows of the level each.
+    parts: Vec<Part>,
+    /// Of how many rows of the level, and entries at each.
+    rows: usize,
+    membranes: usize,
+}
+
+/// Compressed rows.
+#[derive(Debug, Clone, Default, PartialEq)]
+struct Part {
+    start: Vec<u32>,
+    column: Vec<u32>,
+    value: Vec<f64>,
+    diagonal: Vec<f64>,
     /// Zero where the diagonal is.
     inverse: Vec<f64>,
 }
 
+/// One row in the making: its columns with their entries, and the entry on the diagonal.
+pub(super) trait RowMaker {
+    fn make(&mut self, a: usize, entry: usize, push: impl FnMut(u32, f64)) -> f64;
+}
+
 impl Reduced {
-    /// Puts blocks of consecutive rows together.
-    pub(super) fn assemble(blocks: Vec<Rows>) -> Self {
-        let entries = blocks.iter().map(|block| block.column.len()).sum();
-        let rows = blocks.iter().map(|block| block.diagonal.len()).sum();
-        let mut matrix = Self {
-            start: Vec::with_capacity(rows + 1),
-            column: Vec::with_capacity(entries),
-            value: Vec::with_capacity(entries),
-            diagonal: Vec::with_capacity(rows),
-            inverse: Vec::new(),
+    /// With empty rows.
+    pub(super) fn new(rows: usize, membranes: usize) -> Self {
+        let empty = |rows: usize| {
+            let zeros = vec![0.0; rows * membranes];
+            Part {
+                start: vec![0; zeros.len() + 1],
+                diagonal: zeros.clone(),
+                inverse: zeros,
+                ..Part::default()
+            }
         };
-        matrix.start.push(0);
-        for block in blocks {
-            let offset = matrix.column.len();
-            matrix.start.extend(block.ends.iter().map(|end| (offset + end) as u32));
-            matrix.column.extend(block.column);
-            matrix.value.extend(block.off_diagonal);
-            matrix.diagonal.extend(block.diagonal);
+        let parts = (0..rows).step_by(ROWS).map(|first| empty(ROWS.min(rows - first))).collect();
+        Self { parts, rows, membranes }
+    }
+
+    /// Makes the rows of the `dirty` ones of the level anew, which come in order.
+    pub(super) fn renew<M: RowMaker>(&mut self, dirty: &[u32], maker: impl Fn() -> M + Sync + Send) {
+        let n = self.membranes;
+        // The parts with rows to be made, each with these.
+        let mut parts = Vec::new();
+        let mut left = dirty;
+        for (k, part) in self.parts.iter_mut().enumerate() {
+            let own;
+            (own, left) = left.split_at(left.partition_point(|&a| (a as usize) < (k + 1) * ROWS));
+            if !own.is_empty() {
+                parts.push((k * ROWS, part, own));
+            }
         }
-        let reciprocal = |&d: &f64| if d == 0.0 { 0.0 } else { d.recip() };
-        matrix.inverse = matrix.diagonal.iter().map(reciprocal).collect();
-        matrix
+        let work = parts.into_par_iter().with_min_len(PARTS);
+        work.map_init(maker, |maker, (first, part, dirty)| part.renew(first, n, dirty, maker)).count();
     }
 
-    pub(super) fn rows(&self) -> usize {
-        self.diagonal.len()
+    pub(super) fn entries(&self) -> usize {
+        self.rows * self.membranes
     }
 
-    /// The entries of a row off the diagonal.
+    /// The part of an entry at a row of the level, and its row there.
     #[inline(always)]
-    pub(super) fn row(&self, i: usize) -> impl Iterator<Item = (usize, f64)> {
-        let range = self.start[i] as usize..self.start[i + 1] as usize;
-        self.column[range.clone()].iter().zip(&self.value[range]).map(|(&j, &value)| (j as usize, value))
+    fn find(&self, a: usize, entry: usize) -> (&Part, usize) {
+        let part = a / ROWS;
+        (&self.parts[part], entry - part * ROWS * self.membranes)
     }
 
+    /// The entry on the diagonal.
+    pub(super) fn diagonal(&self, a: usize, entry: usize) -> f64 {
+        let (part, row) = self.find(a, entry);
+        part.diagonal[row]
+    }
+
+    /// The entries off the diagonal.
     #[inline(always)]
-    fn off_diagonal_product(&self, i: usize, x: &[f64]) -> f64 {
-        let range = self.start[i] as usize..self.start[i + 1] as usize;
+    pub(super) fn row(&self, a: usize, entry: usize) -> impl Iterator<Item = (usize, f64)> {
+        let (part, row) = self.find(a, entry);
+        let range = part.range(row);
+        part.column[range.clone()].iter().zip(&part.value[range]).map(|(&j, &value)| (j as usize, value))
+    }
+
+    /// The parts, each with its first entry.
+    fn parts(&self) -> impl DoubleEndedIterator<Item = (usize, &Part)> {
+        self.parts.iter().enumerate().map(|(k, part)| (k * ROWS * self.membranes, part))
+    }
+
+    /// A Gauss-Seidel sweep from zero.
+    pub(super) fn relax_from_zero(&self, b: &[f64], x: &mut [f64]) {
+        x.fill(0.0);
+        for (first, part) in self.parts() {
+            for i in (0..part.inverse.len()).filter(|&i| part.inverse[i] != 0.0) {
+                x[first + i] = (b[first + i] - part.product(i, x)) * part.inverse[i];
+            }
+        }
+    }
+
+    /// A sweep in the other order.
+    pub(super) fn relax_backwards(&self, b: &[f64], x: &mut [f64]) {
+        for (first, part) in self.parts().rev() {
+            for i in (0..part.inverse.len()).rev().filter(|&i| part.inverse[i] != 0.0) {
+                x[first + i] = (b[first + i] - part.product(i, x)) * part.inverse[i];
+            }
+        }
+    }
+
+    /// `b - A x` at the rows that are not empty: `at(entry, r)`.
+    pub(super) fn for_residuals(&self, b: &[f64], x: &[f64], mut at: impl FnMut(usize, f64)) {
+        for (first, part) in self.parts() {
+            for i in (0..part.inverse.len()).filter(|&i| part.inverse[i] != 0.0) {
+                at(first + i, b[first + i] - part.diagonal[i] * x[first + i] - part.product(i, x));
+            }
+        }
+    }
+}
+
+impl Part {
+    #[inline(always)]
+    fn range(&self, i: usize) -> std::ops::Range<usize> {
+        self.start[i] as usize..self.start[i + 1] as usize
+    }
+
+    /// The product of row `i` off the diagonal.
+    #[inline(always)]
+    fn product(&self, i: usize, x: &[f64]) -> f64 {
+        let range = self.range(i);
         let (mut columns, mut values) = (&self.column[range.clone()], &self.value[range]);
         let mut sum = 0.0;
         while let (Some(([j, k, l, m], columns_left)), Some(([a, b, c, d], values_left))) =
@@ -68,31 +152,38 @@ impl Reduced {
         sum
     }
 
-    /// A Gauss-Seidel sweep from zero.
-    pub(super) fn relax_from_zero(&self, b: &[f64], x: &mut [f64]) {
-        x.fill(0.0);
-        self.relax(b, x);
-    }
-
-    /// A Gauss-Seidel sweep.
-    fn relax(&self, b: &[f64], x: &mut [f64]) {
-        for i in (0..self.rows()).filter(|&i| self.inverse[i] != 0.0) {
-            x[i] = (b[i] - self.off_diagonal_product(i, x)) * self.inverse[i];
+    /// Makes the rows of the `dirty` ones of the level anew; `first` is the one with which it begins.
+    fn renew(&mut self, first: usize, n: usize, dirty: &[u32], maker: &mut impl RowMaker) {
+        let rows = self.diagonal.len();
+        let mut new = Self {
+            start: Vec::with_capacity(rows + 1),
+            diagonal: Vec::with_capacity(rows),
+            ..Self::default()
+        };
+        new.column.reserve(self.column.len());
+        new.value.reserve(self.column.len());
+        new.start.push(0);
+        let mut dirty = dirty.iter().map(|&a| a as usize - first).peekable();
+        for a in 0..rows / n {
+            let is_dirty = dirty.next_if_eq(&a).is_some();
+            for i in a * n..(a + 1) * n {
+                let diagonal = if is_dirty {
+                    let Self { column, value, .. } = &mut new;
+                    maker.make(first + a, first * n + i, |j, entry| {
+                        column.push(j);
+                        value.push(entry);
+                    })
+                } else {
+                    new.column.extend_from_slice(&self.column[self.range(i)]);
+                    new.value.extend_from_slice(&self.value[self.range(i)]);
+                    self.diagonal[i]
+                };
+                new.diagonal.push(diagonal);
+                new.start.push(new.column.len() as u32);
+            }
         }
-    }
-
-    /// A sweep in the other order.
-    pub(super) fn relax_backwards(&self, b: &[f64], x: &mut [f64]) {
-        for i in (0..self.rows()).rev().filter(|&i| self.inverse[i] != 0.0) {
-            x[i] = (b[i] - self.off_diagonal_product(i, x)) * self.inverse[i];
-        }
-    }
-
-    /// `b - A x` at the rows that are not empty: `at(row, r)`.
-    pub(super) fn for_residuals(&self, b: &[f64], x: &[f64], mut at: impl FnMut(usize, f64)) {
-        for i in (0..self.rows()).filter(|&i| self.inverse[i] != 0.0) {
-            at(i, b[i] - self.diagonal[i] * x[i] - self.off_diagonal_product(i, x));
-        }
+        new.inverse = new.diagonal.iter().map(|&d| if d == 0.0 { 0.0 } else { d.recip() }).collect();
+        *self = new;
     }
 }
 
@@ -117,8 +208,8 @@ impl BlockRows for Reduced {
         partition: &Partition,
         mut entry: impl FnMut(usize, usize, f64),
     ) {
-        entry(a, block, self.diagonal[block]);
-        for (column, value) in self.row(block) {
+        entry(a, block, self.diagonal(a, block));
+        for (column, value) in self.row(a, block) {
             entry(partition.vertex(column), column, value);
         }
     }
