@@ -54,3 +54,48 @@ fn is_hopeless(before: f64, after: f64, tolerance: f64, most: usize) -> bool {
     let paces = (most / PATIENCE) as i32;
     !(after * (after / before).powi(paces) <= tolerance)
 }
+
+#[cfg(test)]
+mod tests {
+    use web_time::Instant;
+
+    use super::*;
+
+    /// Its residual falls by a factor in each cycle; the contact set changes up to a cycle.
+    struct Pace {
+        factor: f64,
+        violation: f64,
+        changes: usize,
+    }
+
+    impl Cycle for Pace {
+        fn cycle(&mut self, _: f64) -> Result<Found, NotFactored> {
+            self.violation *= self.factor;
+            self.changes = self.changes.saturating_sub(1);
+            Ok(Found { violation: self.violation, ..Found::default() })
+        }
+
+        fn has_changed(&self) -> bool {
+            self.changes > 0
+        }
+    }
+
+    fn ends(factor: f64, changes: usize) -> (Status, usize) {
+        let limits = Limits::new(90, None, Instant::now(), None);
+        let first = Found { violation: 1.0, ..Found::default() };
+        let mut pace = Pace { factor, violation: 1.0, changes };
+        let (status, history) = run(&mut pace, first, 1.001e-6, 60, &limits).unwrap();
+        (status, history.len() - 1)
+    }
+
+    #[test]
+    fn it_stops_where_the_pace_leads_nowhere() {
+        assert_eq!(ends(0.1, 0), (Status::Solved, 6));
+        assert_eq!(ends(0.79, 0), (Status::Solved, 59));
+        // 0.8^60 is not small enough.
+        assert_eq!(ends(0.8, 0), (Status::Stalled, PATIENCE));
+        assert_eq!(ends(f64::NAN, 0), (Status::Stalled, PATIENCE));
+        // A contact set that changes in the cycle that arrives has one more.
+        assert_eq!(ends(0.1, 50), (Status::Solved, 7));
+    }
+}

@@ -116,32 +116,58 @@ fn parts(level: &StackLevel) -> Vec<u32> {
     part
 }
 
+/// One row of the stiffness matrices of some membranes, without foundations: where any of them has an entry.
+#[derive(Default)]
+struct CommonRow {
+    columns: Vec<usize>,
+    /// Those of all membranes at each column.
+    entries: Vec<f64>,
+}
+
+impl CommonRow {
+    fn read(&mut self, d: &StackDiscretization, a: usize, membranes: &[usize]) {
+        let Self { columns, entries } = self;
+        columns.clear();
+        for &i in membranes {
+            columns.extend(d.stiffness_row(i, a).filter(|&(_, k)| k != 0.0).map(|(b, _)| b));
+        }
+        columns.sort_unstable();
+        columns.dedup();
+        entries.clear();
+        entries.resize(columns.len() * membranes.len(), 0.0);
+        for (g, &i) in membranes.iter().enumerate() {
+            for (b, k) in d.stiffness_row(i, a).filter(|&(_, k)| k != 0.0) {
+                let at = columns.binary_search(&b).expect("its columns are among them");
+                entries[at * membranes.len() + g] = k;
+            }
+        }
+    }
+
+    fn entries(&self, membranes: usize) -> impl Iterator<Item = (usize, &[f64])> {
+        self.columns.iter().copied().zip(self.entries.chunks_exact(membranes))
+    }
+}
+
 /// `sum_i K_i / trace K_i`: what all membranes have in common.
 fn common_matrix(d: &StackDiscretization) -> CsMat<f64> {
     let vertices = d.mesh().points().len();
-    let scale: Vec<f64> =
-        (1..=d.membranes()).map(|i| (0..vertices).map(|a| d.diagonal(i, a)).sum::<f64>().recip()).collect();
+    let membranes: Vec<usize> = (1..=d.membranes()).collect();
+    let trace = |&i: &usize| (0..vertices).map(|a| d.diagonal(i, a)).sum::<f64>();
+    let scale: Vec<f64> = membranes.iter().map(|i| trace(i).recip()).collect();
     let (mut start, mut columns, mut values) = (vec![0], Vec::new(), Vec::new());
-    let (mut sum, mut terms): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
+    let mut row = CommonRow::default();
     for a in 0..vertices {
-        // All membranes have the same columns: those of the mesh.
-        let row = d.stiffness_row(1, a).map(|(b, _)| b);
-        columns.extend(row);
-        sum.clear();
-        sum.resize(columns.len() - start[a], 0.0);
-        terms.clone_from(&sum);
-        for (i, scale) in (1..).zip(&scale) {
-            for (k, (b, entry)) in d.stiffness_row(i, a).enumerate() {
-                let on_foundation = if a == b { d.foundation(i, a) } else { 0.0 };
-                sum[k] += scale * (entry + on_foundation);
-                terms[k] += scale * (entry + on_foundation).abs();
-            }
+        row.read(d, a, &membranes);
+        for (b, entries) in row.entries(membranes.len()) {
+            let on_foundation = |i: usize| if a == b { d.foundation(i, a) } else { 0.0 };
+            let parts = || {
+                let all = membranes.iter().zip(entries).zip(&scale);
+                all.map(|((&i, entry), scale)| scale * (entry + on_foundation(i)))
+            };
+            let [sum, terms] = [parts().sum::<f64>(), parts().map(f64::abs).sum()];
+            columns.push(b);
+            values.push(if sum.abs() < CANCELLED * terms { terms } else { sum });
         }
-        values.extend(
-            sum.iter()
-                .zip(&terms)
-                .map(|(&sum, &terms)| if sum.abs() < CANCELLED * terms { terms } else { sum }),
-        );
         start.push(columns.len());
     }
     CsMat::new((vertices, vertices), start, columns, values)
@@ -199,24 +225,23 @@ fn finest(d: &StackDiscretization, hierarchy: &Hierarchy, profiles: &[(f64, usiz
     let mut row_of = vec![0u32; vertex.len()];
     (0..).zip(vertex).for_each(|(row, &a)| row_of[a as usize] = row);
     let level = &hierarchy.levels()[hierarchy.finest()];
-    // An entry is kept where any profile has one: opposite a right angle it is zero.
+    let of_profile: Vec<usize> = profiles.iter().map(|&(_, i)| i).collect();
     let block = |block: std::ops::Range<usize>| {
         let mut rows: Vec<Rows> = profiles.iter().map(|_| Rows::with_capacity(block.len())).collect();
+        let mut common = CommonRow::default();
         for row in block {
             let a = vertex[row] as usize;
-            let is_held = level.is_held(row);
-            let mut of_profiles: Vec<_> = profiles.iter().map(|&(_, i)| d.stiffness_row(i, a)).collect();
             let mut diagonal = vec![0.0; profiles.len()];
-            while let Some(entries) = of_profiles.iter_mut().map(Iterator::next).collect::<Option<Vec<_>>>() {
-                let b = entries[0].0;
-                let is_entry = !is_held && entries.iter().any(|&(_, k)| k != 0.0);
-                for (g, &(_, k)) in entries.iter().enumerate().filter(|_| is_entry) {
-                    let value = k / profiles[g].0;
-                    if a == b {
-                        diagonal[g] = value;
-                    } else {
-                        rows[g].column.push(row_of[b]);
-                        rows[g].off_diagonal.push(value);
+            if !level.is_held(row) {
+                common.read(d, a, &of_profile);
+                for (b, entries) in common.entries(profiles.len()) {
+                    for (g, (k, (factor, _))) in entries.iter().zip(profiles).enumerate() {
+                        if a == b {
+                            diagonal[g] = k / factor;
+                        } else {
+                            rows[g].column.push(row_of[b]);
+                            rows[g].off_diagonal.push(k / factor);
+                        }
                     }
                 }
             }
