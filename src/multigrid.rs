@@ -3,8 +3,10 @@
 pub(crate) mod cholesky;
 mod correction;
 mod direct;
+mod driver;
 pub(crate) mod half;
 pub(crate) mod hierarchy;
 pub(crate) mod linear;
+pub(crate) mod stack;
 pub(crate) mod sweep;
 pub(crate) mod truncation;

@@ -9,6 +9,11 @@ use crate::multigrid::hierarchy::{Level, Values};
 /// fraction it has a factor; the correction still lowers the energy, and is the same but for this fraction.
 const SHIFT: f64 = 1e-10;
 
+/// An entry of the diagonal, raised.
+pub(super) fn raised(diagonal: f64) -> f64 {
+    (1.0 + SHIFT) * diagonal
+}
+
 /// A Cholesky factor that follows the truncated matrix of a level.
 pub(crate) struct Direct {
     cholesky: Cholesky,
@@ -45,7 +50,7 @@ impl Direct {
         let value = |&at: &usize| match at.checked_sub(entries) {
             None => values.off_diagonal[at],
             Some(row) if values.diagonal[row] == 0.0 => 1.0,
-            Some(row) => (1.0 + SHIFT) * values.diagonal[row],
+            Some(row) => raised(values.diagonal[row]),
         };
         self.cholesky.refactor(self.source.iter().map(value))
     }

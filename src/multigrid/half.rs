@@ -7,6 +7,7 @@
 //! of a step of the active set method.
 
 use super::correction::CoarseLevels;
+use super::driver::{self, Cycle};
 use super::sweep::{Bounded, Found, Iterate};
 use crate::multigrid::cholesky::NotFactored;
 use crate::multigrid::hierarchy::Hierarchy;
@@ -17,10 +18,6 @@ pub(crate) const MAX_CYCLES: usize = 200;
 
 /// Cycles on a coarser level: its error is then well below that of its discretisation.
 const COARSE_CYCLES: usize = 2;
-
-/// Cycles over which the pace is measured: one that would not reach the tolerance in [`MAX_CYCLES`] cycles has arrived at
-/// rounding, or at nothing.
-const PATIENCE: usize = 3;
 
 /// Two energies that differ by less than this fraction may do so by the rounding of their sums.
 const ENERGY_ROUNDING: f64 = 1e-12;
@@ -86,13 +83,6 @@ pub(crate) fn solve(
     Ok(HalfSolution { cycles, ..found })
 }
 
-/// Whether a residual that has fallen from one size to another in [`PATIENCE`] cycles would not be within the tolerance after
-/// [`MAX_CYCLES`] at that pace.
-fn is_hopeless(before: f64, after: f64, tolerance: f64) -> bool {
-    let paces = (MAX_CYCLES / PATIENCE) as i32;
-    !(after * (after / before).powi(paces) <= tolerance)
-}
-
 /// A function on level `l` with its boundary values, on the level above with zero ones.
 fn prolonged(hierarchy: &Hierarchy, l: usize, mut x: Vec<f64>, height: &[f64], lower: f64) -> Vec<f64> {
     let [coarse, fine] = [l, l + 1].map(|l| &hierarchy.levels()[l]);
@@ -137,28 +127,8 @@ impl<'c, 'h> Cycles<'c, 'h> {
 
     /// Until the weighted residual is within the tolerance and the contact set stays.
     fn run(mut self, limits: &Limits) -> Result<HalfSolution, NotFactored> {
-        let tolerance = self.bounded.tolerance;
-        let mut history = vec![self.relax(false)];
-        let status = loop {
-            let cycles = history.len() - 1;
-            let found = history[cycles];
-            // Vertices at the rim that are undecided within rounding may change for ever: one more cycle is for them.
-            let stays = cycles == 0 || self.changed.is_empty() || history[cycles - 1].violation <= tolerance;
-            if found.violation <= tolerance && stays {
-                break Status::Solved;
-            }
-            if let Some(limit) = limits.reached(cycles) {
-                break limit;
-            }
-            if cycles >= PATIENCE
-                && is_hopeless(history[cycles - PATIENCE].violation, found.violation, tolerance)
-            {
-                break Status::Stalled;
-            }
-            self.coarse.solve(self.finest, &self.frozen, &self.changed)?;
-            self.changed.clear();
-            history.push(self.correct(found.energy));
-        };
+        let (tolerance, first) = (self.bounded.tolerance, self.relax(false));
+        let (status, history) = driver::run(&mut self, first, tolerance, MAX_CYCLES, limits)?;
         let y = self.bounded.multiplier(&self.x);
         let energies = history.iter().map(|found| found.energy).collect();
         Ok(HalfSolution { x: self.x, y, cycles: vec![history.len() - 1], status, energies })
@@ -197,5 +167,17 @@ impl<'c, 'h> Cycles<'c, 'h> {
             coarse: functional,
         };
         self.bounded.correct_and_relax(&self.last, corrected.then_some(correction), iterate)
+    }
+}
+
+impl Cycle for Cycles<'_, '_> {
+    fn cycle(&mut self, energy: f64) -> Result<Found, NotFactored> {
+        self.coarse.solve(self.finest, &self.frozen, &self.changed)?;
+        self.changed.clear();
+        Ok(self.correct(energy))
+    }
+
+    fn has_changed(&self) -> bool {
+        !self.changed.is_empty()
     }
 }

@@ -15,9 +15,9 @@ mod transfer;
 mod tests;
 
 pub(crate) use coloring::Coloring;
-pub(crate) use galerkin::RowSum;
+pub(crate) use galerkin::{RowSum, galerkin};
 pub(crate) use genealogy::{Genealogy, Mean};
-pub(crate) use matrix::{Pattern, Values};
+pub(crate) use matrix::{Pattern, Rows, Values, assemble};
 pub(crate) use runs::{LONGEST, Runs};
 pub(crate) use transfer::Transfer;
 
@@ -27,7 +27,6 @@ use crate::mesh::{Mesh, VertexKind};
 use crate::parallel::BLOCK;
 use crate::parallel::prelude::*;
 use coarsening::coarsened;
-use galerkin::galerkin;
 use matrix::{compact_stiffness, reordered};
 use ordering::{banded_order, inverse, is_banded};
 

@@ -73,11 +73,7 @@ impl<'d> PreparedAuto<'d> {
 impl PreparedSolver for PreparedAuto<'_> {
     fn solve(&mut self, options: &SolverOptions) -> Result<Candidate, SolverError> {
         let (kind, unknowns) = match self.structure {
-            Structure::Coupled(d) => {
-                let reason = format!("{} ({} unknowns)", kind(d), grouped(d.unknowns()));
-                return Ok(chosen(by_active_set(self.structure, options)?, &reason));
-            }
-            Structure::Obstacle(d) => (Some(kind(d)), d.unknowns()),
+            Structure::Obstacle(d) | Structure::Coupled(d) => (Some(kind(d)), d.unknowns()),
             Structure::Pair(d) => (None, d.interior().len()),
         };
         let (few, hierarchy) = small(self.structure.mesh().ancestry().len());

@@ -18,9 +18,6 @@ pub enum SolverError {
         "the stiffness matrix cannot be factored: memory is short, or the mesh has triangles that are too thin"
     )]
     NotFactored,
-    /// The problem is none of those that multigrid solves.
-    #[error("multigrid solves a pair, or one membrane with at most one obstacle: choose auto or active-set")]
-    Coupled,
     /// The tolerance is out of range.
     #[error("the tolerance is {}: give a number between 0 and 1", Number(*_0))]
     Tolerance(f64),

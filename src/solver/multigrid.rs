@@ -9,17 +9,22 @@ use super::{Candidate, ContactSolver, PreparedSolver, SolverError, SolverOptions
 use crate::discretization::{Discretization, PairDiscretization, StackDiscretization, Structure};
 use crate::mesh::Mesh;
 use crate::multigrid::hierarchy::{Genealogy, Hierarchy};
+use crate::multigrid::stack::StackLevels;
 use crate::qp::Status;
 
 const NAME: &str = "multigrid";
 
-/// The pair decoupled, both halves by multigrid, one on each of two threads; or one membrane with at most one obstacle.
+/// The pair decoupled, both halves by multigrid, one on each of two threads; one membrane with at most one obstacle; or any other
+/// stack, all membranes at once.
 ///
 /// Truncated nonsmooth Newton multigrid for the gap, plain multigrid for the sum, on the refinements that made the mesh and
 /// on algebraic levels below them; on algebraic levels alone where it stalls on those, as on stretched triangles; nested
 /// iteration from the coarsest level. The cost of a cycle is linear, and the number
 /// of cycles does not depend on the size of the mesh. The energy falls in every cycle. It ends when the contact set stays and
 /// the residuals are within the tolerance. Results do not depend on the number of threads.
+///
+/// In a stack, membranes that are pressed together move as one in the corrections, which are a few steps of conjugate gradients with
+/// a cycle as their preconditioner.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Multigrid;
 
@@ -50,29 +55,46 @@ impl ContactSolver for Multigrid {
 }
 
 /// The levels of what it solves.
-fn levels(structure: Structure, genealogy: &Genealogy) -> Result<Hierarchy, SolverError> {
-    match structure {
-        Structure::Pair(d) => Ok(Hierarchy::of_pair(d, genealogy)),
-        Structure::Obstacle(d) => {
-            let is_free: Vec<bool> =
-                (0..d.mesh().points().len()).map(|a| d.unknown(1, a).is_some()).collect();
-            Ok(Hierarchy::over(&d.matrix(1), &is_free, genealogy))
+enum Levels {
+    /// Of one matrix.
+    One(Hierarchy),
+    /// Of all membranes together.
+    Coupled(StackLevels),
+}
+
+impl Levels {
+    fn new(structure: Structure, genealogy: &Genealogy) -> Self {
+        match structure {
+            Structure::Pair(d) => Self::One(Hierarchy::of_pair(d, genealogy)),
+            Structure::Obstacle(d) => {
+                let is_free: Vec<bool> =
+                    (0..d.mesh().points().len()).map(|a| d.unknown(1, a).is_some()).collect();
+                Self::One(Hierarchy::over(&d.matrix(1), &is_free, genealogy))
+            }
+            Structure::Coupled(d) => Self::Coupled(StackLevels::new(d, genealogy)),
         }
-        Structure::Coupled(_) => Err(SolverError::Coupled),
+    }
+
+    /// How many of them follow the refinements that made the mesh.
+    fn refinements(&self) -> usize {
+        match self {
+            Self::One(hierarchy) => hierarchy.refinements(),
+            Self::Coupled(levels) => levels.hierarchy().refinements(),
+        }
     }
 }
 
 /// Multigrid for one discretization, whose levels are made once.
 pub(super) struct PreparedMultigrid<'d> {
     structure: Structure<'d>,
-    hierarchy: Option<Hierarchy>,
+    levels: Option<Levels>,
     /// Levels that are not tried again: those of the refinements, once it has stalled on them.
     stalled: Vec<Stalled>,
 }
 
 impl<'d> PreparedMultigrid<'d> {
     pub(super) fn new(structure: Structure<'d>) -> Self {
-        Self { structure, hierarchy: None, stalled: Vec::new() }
+        Self { structure, levels: None, stalled: Vec::new() }
     }
 
     /// Solves on the levels that there are, else on those that are made by this genealogy; the time limit counts from `start`.
@@ -83,16 +105,22 @@ impl<'d> PreparedMultigrid<'d> {
         start: Instant,
     ) -> Result<Candidate, SolverError> {
         let begin = Instant::now();
-        let hierarchy = match &mut self.hierarchy {
-            Some(hierarchy) => hierarchy,
-            none => none.insert(levels(self.structure, &genealogy(self.structure.mesh()))?),
+        let levels = match &mut self.levels {
+            Some(levels) => levels,
+            none => none.insert(Levels::new(self.structure, &genealogy(self.structure.mesh()))),
         };
         let setup_seconds = begin.elapsed().as_secs_f64();
-        let mut candidate = match self.structure {
-            Structure::Pair(d) => pair::multigrid::solve_on(hierarchy, d, NAME, options, start),
-            Structure::Obstacle(d) | Structure::Coupled(d) => {
-                stack::multigrid::solve_on(hierarchy, d, NAME, options, start)
+        let mut candidate = match (levels, self.structure) {
+            (Levels::One(levels), Structure::Pair(d)) => {
+                pair::multigrid::solve_on(levels, d, NAME, options, start)
             }
+            (Levels::One(levels), Structure::Obstacle(d) | Structure::Coupled(d)) => {
+                stack::obstacle::solve_on(levels, d, NAME, options, start)
+            }
+            (Levels::Coupled(levels), Structure::Obstacle(d) | Structure::Coupled(d)) => {
+                stack::coupled::solve_on(levels, d, NAME, options, start)
+            }
+            (Levels::Coupled(_), Structure::Pair(_)) => unreachable!("the levels are those of the structure"),
         }?;
         candidate.statistics.setup_seconds = setup_seconds;
         candidate.statistics.solve_seconds = begin.elapsed().as_secs_f64() - setup_seconds;
@@ -106,12 +134,12 @@ impl PreparedSolver for PreparedMultigrid<'_> {
         let start = Instant::now();
         let mut candidate = self.attempt(Genealogy::of, options, start)?;
         candidate.statistics.stalled.clone_from(&self.stalled);
-        let refinements = self.hierarchy.as_ref().map_or(0, Hierarchy::refinements);
+        let refinements = self.levels.as_ref().map_or(0, Levels::refinements);
         if candidate.statistics.status != Status::Stalled || refinements == 0 {
             return Ok(candidate);
         }
         // On stretched triangles coarser meshes are no good: their neighbours along the long sides are hardly coupled.
-        self.hierarchy = None;
+        self.levels = None;
         let unknown = |mesh: &Mesh| Genealogy::unknown(mesh.points().len());
         let mut on_algebraic_levels = self.attempt(unknown, options, start)?;
         let method = format!("{NAME} on levels of {refinements} refinements");

@@ -96,7 +96,7 @@ fn pairs_have_the_rim_where_the_exact_one_is_a_curve() {
 }
 
 #[test]
-fn parameters_and_solvers_that_do_not_suit_a_stack_are_refused_in_one_line() {
+fn parameters_that_do_not_suit_a_stack_are_refused_in_one_line() {
     let refused = |case: &str, arguments: &str| {
         let folder = folder_with_case(&format!("{case}\n[mesh]\ncells = 4\n"));
         let run = run(folder.path(), arguments);
@@ -109,8 +109,6 @@ fn parameters_and_solvers_that_do_not_suit_a_stack_are_refused_in_one_line() {
     };
     assert!(of("R = 0.95", "solve case.toml").contains("choose 0 < R < 0.9"));
     assert!(of("r = 0.5", "solve case.toml").contains("the nearest is `R`"));
-    let coupled = refused("case = \"three-discs\"", "converge case.toml --backend multigrid");
-    assert!(coupled.contains("multigrid"), "{coupled}");
     let misspelt = refused("case = \"three-disks\"", "solve case.toml");
     assert!(misspelt.contains("nearest is `three-discs`"), "{misspelt}");
 }

@@ -18,7 +18,7 @@ use crate::cli::run::levels::{GOES_ON, KEPT, Levels, MEMORY, TIME, failure, sett
 use crate::cli::run::memory::Memory;
 use crate::cli::run::pictures::{Begun, Pictures};
 use crate::cli::run::progress::Progress;
-use crate::cli::run::setup::{Setup, check_solver, options, solver, too_early};
+use crate::cli::run::setup::{Setup, options, solver, too_early};
 use crate::cli::run::watch::Watch;
 use crate::cli::terminal::{note, print, wrapped};
 use crate::discretization::IntegrationRule;
@@ -69,8 +69,6 @@ pub(crate) fn run(arguments: &AdaptArguments, watch: &Watch) -> Result<(), Failu
     if let Some(name) = arguments.backend {
         setup.case.solver.name = name;
     }
-    check_solver(setup.case.solver.name, &setup.case.problem)
-        .map_err(|error| Failure::Input(format!("{}: {error}", setup.name)))?;
     if setup.case.integration != IntegrationRule::Quadrature {
         let problem =
             "`integration` = \"vertices\" leaves the error without a bound that meshes could follow";

@@ -3,10 +3,10 @@
 use super::answer::{self, Verdict};
 use crate::action::{ContactSolution, PairSolution, Rejected, Residuals, certify};
 use crate::cli::args::CheckArguments;
-use crate::cli::case::{CaseFile, SolverName, SolverSettings};
+use crate::cli::case::{SolverName, SolverSettings};
 use crate::cli::failure::Failure;
 use crate::cli::run::progress::Progress;
-use crate::cli::run::setup::{Setup, check_solver, options, solver};
+use crate::cli::run::setup::{Setup, options, solver};
 use crate::cli::run::watch::Watch;
 use crate::cli::terminal::{fixed, print, wrapped};
 use crate::discretization::{Discretization, PairDiscretization};
@@ -35,7 +35,7 @@ pub(crate) fn run(arguments: &CheckArguments, watch: &Watch) -> Result<(), Failu
         setup.case.solver.tolerance = Tolerance::Fixed(tolerance);
     }
     if arguments.answer.is_none() {
-        for name in solvers(&setup.case) {
+        for name in solvers() {
             setup.check_memory(name)?;
         }
     }
@@ -88,12 +88,9 @@ fn report(
     }
 }
 
-/// All of this build that solve the problem; the choice among them is one of them.
-fn solvers(case: &CaseFile) -> impl Iterator<Item = SolverName> {
-    SolverName::ALL
-        .into_iter()
-        .filter(|solver| solver.is_built() && *solver != SolverName::Auto)
-        .filter(|solver| check_solver(*solver, &case.problem).is_ok())
+/// All of this build; the choice among them is one of them.
+fn solvers() -> impl Iterator<Item = SolverName> {
+    SolverName::ALL.into_iter().filter(|solver| solver.is_built() && *solver != SolverName::Auto)
 }
 
 fn columns_of_solvers(
@@ -102,7 +99,7 @@ fn columns_of_solvers(
     progress: &Progress,
 ) -> Result<Vec<Column>, Failure> {
     let mut columns = Vec::new();
-    for name in solvers(&setup.case) {
+    for name in solvers() {
         let ways = if name.is_polished() { [true, false].as_slice() } else { &[true] };
         for &polish in ways {
             let settings = SolverSettings { name, polish, ..setup.case.solver.clone() };

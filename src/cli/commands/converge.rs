@@ -13,7 +13,7 @@ use crate::cli::run::levels::{GOES_ON, KEPT, Levels, MEMORY, TIME, failure, sett
 use crate::cli::run::memory::Memory;
 use crate::cli::run::pictures::Pictures;
 use crate::cli::run::progress::Progress;
-use crate::cli::run::setup::{Setup, check_refinements, check_solver, options, solver, too_early};
+use crate::cli::run::setup::{Setup, check_refinements, options, solver, too_early};
 use crate::cli::run::watch::Watch;
 use crate::cli::terminal::{note, print, wrapped};
 use crate::estimate::DataWarning;
@@ -123,13 +123,9 @@ impl Study {
                     .map(|study| Self::Pair(Box::new(study)))
                     .map_err(of_error)
             }
-            Exact::Stack(exact) => {
-                check_solver(settings.name, &setup.case.problem)
-                    .map_err(|error| Failure::Input(format!("{}: {error}", setup.name)))?;
-                StackStudy::new(exact, family, solver(settings.name), options(settings))
-                    .map(|study| Self::Stack(Box::new(study)))
-                    .map_err(of_error)
-            }
+            Exact::Stack(exact) => StackStudy::new(exact, family, solver(settings.name), options(settings))
+                .map(|study| Self::Stack(Box::new(study)))
+                .map_err(of_error),
         }
     }
 

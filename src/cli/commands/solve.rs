@@ -19,7 +19,7 @@ use crate::cli::run::files::{DUAL, FLUX, MEMBRANES, MESH, Part, RIM, SOLUTION, S
 use crate::cli::run::folder::{Folder, Results};
 use crate::cli::run::pictures::Pictures;
 use crate::cli::run::progress::Progress;
-use crate::cli::run::setup::{Setup, check_solver, options, solver, too_early};
+use crate::cli::run::setup::{Setup, options, solver, too_early};
 use crate::cli::run::watch::Watch;
 use crate::cli::terminal::print;
 use crate::discretization::{Discretization, PairDiscretization};
@@ -39,8 +39,6 @@ pub(crate) fn run(arguments: &SolveArguments, watch: &Watch) -> Result<(), Failu
     let mut setup = Setup::new(&arguments.case, &progress)?;
     override_settings(&mut setup, arguments, &clock);
     setup.check_memory(setup.case.solver.name)?;
-    check_solver(setup.case.solver.name, &setup.case.problem)
-        .map_err(|error| Failure::Input(format!("{}: {error}", setup.name)))?;
     if arguments.dual && setup.case.pair().is_none() {
         return Err(Failure::Input(format!("{}: --dual is for a pair so far: leave it out", setup.name)));
     }

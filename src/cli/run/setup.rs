@@ -20,7 +20,7 @@ use crate::output::Seconds;
 use crate::problem::{ContactProblem, Exact};
 #[cfg(any(feature = "clarabel", feature = "osqp"))]
 use crate::solver::QpSolver;
-use crate::solver::{ActiveSet, Auto, ContactSolver, Multigrid, SolverError, SolverOptions};
+use crate::solver::{ActiveSet, Auto, ContactSolver, Multigrid, SolverOptions};
 use crate::text::grouped;
 
 /// The case and its meshes.
@@ -231,16 +231,6 @@ pub(crate) fn solver(name: SolverName) -> Box<dyn ContactSolver> {
     }
 }
 
-/// Multigrid does not solve every stack.
-pub(crate) fn check_solver(name: SolverName, problem: &ContactProblem) -> Result<(), SolverError> {
-    let obstacles = [problem.ceiling(), problem.floor()].iter().flatten().count();
-    let is_obstacle_problem = matches!(problem.membranes(), [one] if !one.is_pressed()) && obstacles < 2;
-    if name == SolverName::Multigrid && problem.as_pair().is_none() && !is_obstacle_problem {
-        return Err(SolverError::Coupled);
-    }
-    Ok(())
-}
-
 /// What the settings ask of a solver.
 pub(crate) fn options(settings: &SolverSettings) -> SolverOptions {
     SolverOptions {
@@ -251,22 +241,5 @@ pub(crate) fn options(settings: &SolverSettings) -> SolverOptions {
         interrupt: None,
         polish: settings.polish,
         warm_start: None,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::problem::Membrane;
-
-    #[test]
-    fn multigrid_is_refused_for_what_it_does_not_solve() {
-        let sheet = || Membrane::new(1.0).load(-1.0);
-        let floor = ContactProblem::obstacle(sheet(), -1.0).unwrap();
-        let two = ContactProblem::stack().membrane(sheet()).membrane(sheet()).floor(-1.0).build().unwrap();
-        let refused = |name, problem| check_solver(name, problem).err();
-        assert_eq!(refused(SolverName::Multigrid, &floor), None);
-        assert_eq!(refused(SolverName::Multigrid, &two), Some(SolverError::Coupled));
-        assert_eq!(refused(SolverName::Auto, &two), None);
     }
 }

@@ -27,6 +27,13 @@ impl StackDiscretization {
         factor * self.profiles[*profile][t]
     }
 
+    /// The factor and the number of the profile in `K_i = factor * K_profile + C_i`: membranes whose tensions are in proportion share a
+    /// profile.
+    pub(crate) fn profile(&self, i: usize) -> (f64, usize) {
+        let MembraneData { factor, profile, .. } = self.membranes[i - 1];
+        (factor, profile)
+    }
+
     /// The tension of membrane `i` at the points of each triangle; `None` where it has one value on each.
     ///
     /// # Errors

@@ -24,7 +24,7 @@ impl RowSum {
     }
 
     #[inline(always)]
-    fn add(&mut self, column: usize, value: f64) {
+    pub(crate) fn add(&mut self, column: usize, value: f64) {
         let place = self.place[column];
         if place == 0 {
             self.column.push(column as u32);
@@ -35,7 +35,7 @@ impl RowSum {
         }
     }
 
-    fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         for &column in &self.column {
             self.place[column as usize] = 0;
         }

@@ -2,7 +2,8 @@
 
 use sprs::CsMat;
 
-use crate::discretization::{Displacements, Segment, StackDiscretization};
+use super::actions::{actions, for_segments};
+use crate::discretization::{Displacements, StackDiscretization};
 use crate::multigrid::cholesky::{Cholesky, NotFactored};
 
 /// No unknown.
@@ -60,14 +61,6 @@ impl Merged {
     }
 }
 
-/// Calls `visit` with the segments at each vertex.
-fn for_segments(d: &StackDiscretization, active: &[bool], mut visit: impl FnMut(usize, Segment)) {
-    let mut layers = Vec::new();
-    for a in 0..d.dual_area().len() {
-        d.segments(a, active, &mut layers).for_each(|segment| visit(a, segment));
-    }
-}
-
 /// Solves for the displacements where the `active` rows are closed, and for the actions in them.
 pub(super) fn solve(d: &StackDiscretization, active: &[bool]) -> Result<Equilibrium, NotFactored> {
     let merged = Merged::new(d, active);
@@ -78,23 +71,7 @@ pub(super) fn solve(d: &StackDiscretization, active: &[bool]) -> Result<Equilibr
         number => heights[number as usize],
     };
     let displacement = d.extend(&(0..d.unknowns()).map(value).collect::<Vec<f64>>());
-    let mut multiplier = vec![0.0; active.len()];
-    let mut terms = vec![0.0; active.len()];
-    let mut sides: Vec<[f64; 2]> = Vec::new();
-    for_segments(d, active, |a, segment| {
-        sides.clear();
-        sides.extend(segment.layers.clone().map(|i| d.imbalance(i, a, &displacement[i - 1])));
-        let first = segment.layers.start;
-        let of_segment = sides.iter().map(|[_, terms]| terms).sum::<f64>();
-        segment.actions(
-            |i| sides[i - first][0],
-            |k, action| {
-                if let Some(row) = d.row(k, a) {
-                    (multiplier[row], terms[row]) = (action, of_segment);
-                }
-            },
-        );
-    });
+    let [multiplier, terms] = actions(d, active, &displacement);
     Ok(Equilibrium { displacement, multiplier, terms })
 }
 

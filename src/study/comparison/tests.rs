@@ -53,7 +53,7 @@ impl<F: FnMut(Candidate) -> Result<Candidate, SolverError> + Send> ContactSolver
     }
 
     fn solve_stack(&mut self, _: &StackDiscretization, _: &SolverOptions) -> Result<Candidate, SolverError> {
-        Err(SolverError::Coupled)
+        Err(SolverError::NotFactored)
     }
 }
 

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
-use super::{TOLERANCE, posed, solve_by, solvers};
+use super::{TOLERANCE, posed, slack, solve_by, solvers};
 use crate::action::{GapSolution, StackSolution, certify_pair};
 use crate::discretization::{IntegrationRule, PairDiscretization, StackDiscretization};
 use crate::mesh::samples::irregular;
@@ -55,12 +55,15 @@ fn strips_of_contact_are_nodally_exact() {
         for (name, mut solver) in solvers() {
             let solution = solve_by(&mut *solver, &d);
             let off = distance(&mesh, &solution, &exact);
-            assert!(off < ROUNDING, "{case}, {name}: {off:e}");
+            assert!(off < slack(name, ROUNDING), "{case}, {name}: {off:e}");
             for k in exact.gaps() {
                 let off = action_distance(&mesh, &solution, &exact, k);
-                assert!(off < 1e4 * ROUNDING, "{case}, {name}: the action in gap {k} is off by {off:e}");
+                assert!(
+                    off < 1e4 * slack(name, ROUNDING),
+                    "{case}, {name}: the action in gap {k} is off by {off:e}"
+                );
             }
-            assert!(solution.imbalance() < ROUNDING);
+            assert!(solution.imbalance() < slack(name, ROUNDING));
         }
         // The negative test: another choice is seen.
         let other = case.solution(&[("x1".to_owned(), 0.6)].into()).unwrap();
@@ -90,7 +93,7 @@ fn nodal_forces_have_the_line_actions_in_them() {
         for (name, mut solver) in solvers() {
             let solution = solve_by(&mut *solver, &d);
             let off = distance(&mesh, &solution, &exact);
-            assert!(off < ROUNDING, "{case}, {name}: {off:e}");
+            assert!(off < slack(name, ROUNDING), "{case}, {name}: {off:e}");
             let gap = solution.gap(1).unwrap();
             let on_line = |x: f64, y: f64| line.curve.signed_distance(x, y).abs() < 1e-9;
             for (a, &[x, y]) in mesh.points().iter().enumerate().filter(|(_, p)| on_line(p[0], p[1])) {
@@ -100,7 +103,10 @@ fn nodal_forces_have_the_line_actions_in_them() {
                 // At the ends of a line inside, its two sides have not the same area.
                 let at_end = x < 1.0 && (y == 0.0 || y == 0.5);
                 let off = (gap.force[a] - expected).abs();
-                assert!(off < if at_end { 1e-3 } else { ROUNDING }, "{case}, {name}: ({x}, {y}): {off:e}");
+                assert!(
+                    off < if at_end { 1e-3 } else { slack(name, ROUNDING) },
+                    "{case}, {name}: ({x}, {y}): {off:e}"
+                );
                 // As a density, away from the ends of the line.
                 if 0.1 < y && y < 0.4 {
                     let density = gap.line_density[a];
@@ -170,10 +176,10 @@ fn one_membrane_over_a_floor_is_the_gap_of_a_pair() {
         let solution = solve_by(&mut *solver, &d);
         let gap = solution.gap(1).unwrap();
         let off = largest(gap.gap.iter().zip(of_pair.gap()).map(|(one, other)| (one - other).abs()));
-        assert!(off < ROUNDING, "{name}: {off:e}");
+        assert!(off < slack(name, ROUNDING), "{name}: {off:e}");
         assert_eq!(gap.contact, of_pair.contact(), "{name}");
         let off = largest(gap.lambda.iter().zip(of_pair.lambda()).map(|(one, other)| (one - other).abs()));
-        assert!(off < 1e3 * ROUNDING, "{name}: {off:e}");
+        assert!(off < 1e3 * slack(name, ROUNDING), "{name}: {off:e}");
     }
 }
 
@@ -196,7 +202,7 @@ fn a_floor_out_of_reach_leaves_the_pair_as_it_is() {
         for i in 0..2 {
             let pairs = solution.displacement()[i].iter().zip(&of_pair.displacement()[i]);
             let off = largest(pairs.map(|(one, other)| (one - other).abs()));
-            assert!(off < ROUNDING, "{name}: {off:e}");
+            assert!(off < slack(name, ROUNDING), "{name}: {off:e}");
         }
         assert_eq!(solution.gap(1).unwrap().contact, of_pair.contact());
         assert_eq!(solution.gap(2).unwrap().contact_vertices(), 0);

@@ -6,8 +6,9 @@ use super::*;
 use crate::action::{StackSolution, certify_stack};
 use crate::mesh::samples::irregular;
 use crate::mesh::{Bisection, Mesh, MeshSize, Pattern, generate, rectangle};
+use crate::multigrid::hierarchy::Genealogy;
 use crate::problem::{ContactProblem, Domain, Field, Function, Membrane};
-use crate::solver::ActiveSet;
+use crate::solver::{ActiveSet, ContactSolver, Multigrid};
 
 const TOLERANCE: f64 = 1e-10;
 
@@ -30,6 +31,11 @@ fn posed(problem: &ContactProblem, mesh: &Mesh) -> StackDiscretization {
 
 fn certified(d: &StackDiscretization, solver: &mut dyn ContactSolver) -> StackSolution {
     certify_stack(d, solver.solve_stack(d, &options()).unwrap(), TOLERANCE).unwrap()
+}
+
+fn hierarchy(d: &StackDiscretization) -> Hierarchy {
+    let is_free: Vec<bool> = (0..d.mesh().points().len()).map(|a| d.unknown(1, a).is_some()).collect();
+    Hierarchy::over(&d.matrix(1), &is_free, &Genealogy::of(d.mesh()))
 }
 
 fn square(cells: usize) -> Mesh {
@@ -222,11 +228,7 @@ fn an_obstacle_that_is_far_away_costs_no_digits() {
     }
     // As it is, it costs too many.
     let d = posed(&far_obstacles()[1], &square(128));
-    let hierarchy = Hierarchy::over(
-        &d.matrix(1),
-        &(0..d.mesh().points().len()).map(|a| d.unknown(1, a).is_some()).collect::<Vec<_>>(),
-        &Genealogy::of(d.mesh()),
-    );
+    let hierarchy = hierarchy(&d);
     let obstacle = Obstacle::of(&d);
     let limits = options().limits(MAX_CYCLES, Instant::now());
     let found = solve(&hierarchy, obstacle.half(&hierarchy, &options(), None), &limits).unwrap();
@@ -255,23 +257,6 @@ fn an_obstacle_is_moved_only_where_nothing_touches_it() {
     assert!(Obstacle::of(&posed(&problems()[0].1, &with_sides(square(16)))).nearer(&u).is_none());
 }
 
-#[test]
-fn other_stacks_are_refused() {
-    let sheet = || Membrane::new(1.0).load(-1.0);
-    let both = ContactProblem::stack().membrane(sheet()).floor(-1.0).ceiling(1.0).build().unwrap();
-    let two = ContactProblem::stack().membrane(sheet()).membrane(sheet()).floor(-1.0).build().unwrap();
-    for problem in [both, two] {
-        let d = posed(&problem, &square(8));
-        assert!(!Multigrid::solves_stack(d.membranes(), d.has_obstacles()));
-        let error = Multigrid.solve_stack(&d, &options()).unwrap_err();
-        assert!(error.to_string().contains("choose auto or active-set"), "{error}");
-    }
-    for (_, problem) in problems() {
-        let d = posed(&problem, &with_sides(square(8)));
-        assert!(Multigrid::solves_stack(d.membranes(), d.has_obstacles()));
-    }
-}
-
 /// Edges that are fixed in part: on coarser meshes no vertex may be where the fixed part ends.
 #[test]
 fn edges_that_are_fixed_in_part_have_levels() {
@@ -280,8 +265,9 @@ fn edges_that_are_fixed_in_part_have_levels() {
         let mesh = square(32).with_curve("clip", |[x, y]| x < 1e-9 && y < end).unwrap();
         let sheet = Membrane::new(tension()).load(load()).free().height_on("clip", 0.05);
         let d = posed(&ContactProblem::obstacle(sheet, wavy()).unwrap(), &mesh);
-        let (candidate, followed) = attempt(&d, &Genealogy::of(&mesh), &options(), Instant::now()).unwrap();
-        assert_eq!(followed, refinements, "{fixed} edges are fixed");
+        let hierarchy = hierarchy(&d);
+        assert_eq!(hierarchy.refinements(), refinements, "{fixed} edges are fixed");
+        let candidate = solve_on(&hierarchy, &d, "multigrid", &options(), Instant::now()).unwrap();
         let cycles = candidate.statistics.iterations;
         assert!(cycles <= SINGULAR_CYCLES, "{fixed} edges are fixed: {cycles}");
         let [found, exact] =

@@ -8,6 +8,9 @@
 //!
 //! likewise with `v = psi - u` under a ceiling; without an obstacle `psi` is zero, and `v` has no bound.
 
+#[cfg(test)]
+mod tests;
+
 use std::borrow::Cow;
 
 use web_time::Instant;

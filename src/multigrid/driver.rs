@@ -1,0 +1,101 @@
+//! Cycles until the answer is there, or no more is to be had: the same for a membrane and for stacks.
+
+use super::cholesky::NotFactored;
+use super::sweep::Found;
+use crate::qp::{Limits, Status};
+
+/// Cycles over which the pace is measured: one that would not reach the tolerance in as many cycles as there may be has arrived at
+/// rounding, or at nothing.
+const PATIENCE: usize = 3;
+
+/// What makes an iterate better.
+pub(super) trait Cycle {
+    /// Makes the next iterate, from one of this energy.
+    fn cycle(&mut self, energy: f64) -> Result<Found, NotFactored>;
+
+    /// Whether the contact set has changed with the last iterate.
+    fn has_changed(&self) -> bool;
+}
+
+/// Until the weighted residual is within the tolerance and the contact set stays. `most` is the number of cycles within which the
+/// pace has to lead there. Returns what has been found after each cycle, and `first` before all.
+pub(super) fn run(
+    method: &mut impl Cycle,
+    first: Found,
+    tolerance: f64,
+    most: usize,
+    limits: &Limits,
+) -> Result<(Status, Vec<Found>), NotFactored> {
+    let mut history = vec![first];
+    let status = loop {
+        let cycles = history.len() - 1;
+        let found = history[cycles];
+        // Vertices at the rim that are undecided within rounding may change for ever: one more cycle is for them.
+        let stays = cycles == 0 || !method.has_changed() || history[cycles - 1].violation <= tolerance;
+        if found.violation <= tolerance && stays {
+            break Status::Solved;
+        }
+        if let Some(limit) = limits.reached(cycles) {
+            break limit;
+        }
+        if cycles >= PATIENCE
+            && is_hopeless(history[cycles - PATIENCE].violation, found.violation, tolerance, most)
+        {
+            break Status::Stalled;
+        }
+        history.push(method.cycle(found.energy)?);
+    };
+    Ok((status, history))
+}
+
+/// Whether a residual that has fallen from one size to another in [`PATIENCE`] cycles would not be within the tolerance after `most`
+/// at that pace.
+fn is_hopeless(before: f64, after: f64, tolerance: f64, most: usize) -> bool {
+    let paces = (most / PATIENCE) as i32;
+    !(after * (after / before).powi(paces) <= tolerance)
+}
+
+#[cfg(test)]
+mod tests {
+    use web_time::Instant;
+
+    use super::*;
+
+    /// Its residual falls by a factor in each cycle; the contact set changes up to a cycle.
+    struct Pace {
+        factor: f64,
+        violation: f64,
+        changes: usize,
+    }
+
+    impl Cycle for Pace {
+        fn cycle(&mut self, _: f64) -> Result<Found, NotFactored> {
+            self.violation *= self.factor;
+            self.changes = self.changes.saturating_sub(1);
+            Ok(Found { violation: self.violation, ..Found::default() })
+        }
+
+        fn has_changed(&self) -> bool {
+            self.changes > 0
+        }
+    }
+
+    fn ends(factor: f64, changes: usize) -> (Status, usize) {
+        let limits = Limits::new(90, None, Instant::now(), None);
+        let first = Found { violation: 1.0, ..Found::default() };
+        let mut pace = Pace { factor, violation: 1.0, changes };
+        let (status, history) = run(&mut pace, first, 1.001e-6, 60, &limits).unwrap();
+        (status, history.len() - 1)
+    }
+
+    #[test]
+    fn it_stops_where_the_pace_leads_nowhere() {
+        assert_eq!(ends(0.1, 0), (Status::Solved, 6));
+        assert_eq!(ends(0.79, 0), (Status::Solved, 59));
+        // 0.8^60 is not small enough.
+        assert_eq!(ends(0.8, 0), (Status::Stalled, PATIENCE));
+        assert_eq!(ends(f64::NAN, 0), (Status::Stalled, PATIENCE));
+        // A contact set that changes in the cycle that arrives has one more.
+        assert_eq!(ends(0.1, 50), (Status::Solved, 7));
+    }
+}
