@@ -1,7 +1,11 @@
 //! The actions in the rows of a stack, from displacements alone.
 
+use std::ops::Range;
+
 use crate::action::recovery::ROUNDINGS;
 use crate::discretization::{Segment, StackDiscretization};
+use crate::parallel::blocks;
+use crate::parallel::prelude::*;
 
 /// What is recovered from displacements, over rows. Unit: force.
 pub(super) struct Forces {
@@ -21,15 +25,32 @@ pub(super) fn forces(
     closed: &[bool],
     given: Option<&[f64]>,
 ) -> Forces {
+    let of_block = |vertices: Range<usize>| {
+        let (mut found, mut layers) = (Found::default(), Vec::new());
+        for a in vertices {
+            for segment in d.segments(a, closed, &mut layers) {
+                add_segment(d, u, a, &segment, given, &mut found);
+            }
+        }
+        found
+    };
+    let blocks: Vec<Found> = blocks(d.dual_area().len()).into_par_iter().map(of_block).collect();
     let rows = closed.len();
     let mut forces = Forces { action: vec![0.0; rows], rounding: vec![0.0; rows], balance: Vec::new() };
-    let mut layers = Vec::new();
-    for a in 0..d.dual_area().len() {
-        for segment in d.segments(a, closed, &mut layers) {
-            add_segment(d, u, a, &segment, given, &mut forces);
+    for Found { actions, balance } in blocks {
+        for (row, action, rounding) in actions {
+            (forces.action[row], forces.rounding[row]) = (action, rounding);
         }
+        forces.balance.extend(balance);
     }
     forces
+}
+
+/// What is found at some vertices: rows with their actions, and the block balances, each with its rounding.
+#[derive(Default)]
+struct Found {
+    actions: Vec<(usize, f64, f64)>,
+    balance: Vec<(usize, f64, f64)>,
 }
 
 fn add_segment(
@@ -38,7 +59,7 @@ fn add_segment(
     a: usize,
     segment: &Segment,
     given: Option<&[f64]>,
-    forces: &mut Forces,
+    forces: &mut Found,
 ) {
     let first = segment.layers.start;
     let sides: Vec<[f64; 2]> = segment.layers.clone().map(|i| d.imbalance(i, a, &u[i - 1])).collect();
@@ -53,9 +74,7 @@ fn add_segment(
         (Some(given), Some(&(row, action))) if undetermined => given[row] - action,
         _ => 0.0,
     };
-    for (row, action) in found {
-        (forces.action[row], forces.rounding[row]) = (action + shift, rounding);
-    }
+    forces.actions.extend(found.into_iter().map(|(row, action)| (row, action + shift, rounding)));
     if segment.above.is_none() && segment.below.is_none() {
         forces.balance.push((a, left, rounding));
     }

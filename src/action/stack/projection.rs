@@ -4,6 +4,8 @@ use super::forces::forces;
 use crate::action::CutOff;
 use crate::action::recovery::ROUNDINGS;
 use crate::discretization::{Displacements, Segment, StackDiscretization};
+use crate::parallel::BLOCK;
+use crate::parallel::prelude::*;
 
 /// See [`action::projection`](crate::action::CutOff): of the gap and the multiplier of a row, the smaller one, relative to the
 /// data, becomes zero. Membranes that touch move to their mean, weighted by the diagonals of their `K_i`, or to what they rest
@@ -21,8 +23,9 @@ impl Projection {
     pub(super) fn new(d: &StackDiscretization, mut displacement: Displacements, multiplier: &[f64]) -> Self {
         let scales = d.scales();
         let mut moved = take_known_heights(d, &mut displacement);
+        let rows = (0..multiplier.len()).into_par_iter().with_min_len(BLOCK);
         let mut touching: Vec<bool> =
-            (0..multiplier.len()).map(|row| touches(d, &displacement, row, multiplier[row])).collect();
+            rows.map(|row| touches(d, &displacement, row, multiplier[row])).collect();
         for a in 0..d.dual_area().len() {
             moved = close_gaps(d, a, &mut touching, &mut displacement).max(moved);
         }
@@ -86,7 +89,11 @@ fn close_gaps(
 ) -> f64 {
     let mut layers = Vec::new();
     let mut moved: f64 = 0.0;
-    let rows: Vec<usize> = (0..=d.membranes()).filter_map(|gap| d.row(gap, a)).collect();
+    let rows = || (0..=d.membranes()).filter_map(|gap| d.row(gap, a));
+    if !rows().any(|row| touching[row]) {
+        return moved;
+    }
+    let rows: Vec<usize> = rows().collect();
     // Each pass but the last closes one more gap.
     for _ in 0..=rows.len() {
         for segment in d.segments(a, touching, &mut layers) {

@@ -4,6 +4,8 @@ use super::forces::forces;
 use crate::action::recovery::ROUNDINGS;
 use crate::action::residuals::{Residual, Residuals, hat_integrals};
 use crate::discretization::StackDiscretization;
+use crate::parallel::BLOCK;
+use crate::parallel::prelude::*;
 
 /// Recomputes all checks, from `K_i`, `F_i`, heights and obstacles.
 pub(super) fn residuals(d: &StackDiscretization, u: &[Vec<f64>], multiplier: &[f64]) -> Residuals {
@@ -19,12 +21,15 @@ pub(super) fn residuals(d: &StackDiscretization, u: &[Vec<f64>], multiplier: &[f
     let y = |gap: usize, a: usize| d.row(gap, a).map_or(0.0, |row| multiplier[row]);
     for i in 1..=d.membranes() {
         let u = &u[i - 1];
-        for &a in d.free_vertices(i) {
+        let at = |&a: &usize| {
             let [imbalance, terms] = d.imbalance(i, a, u);
             let defect = (imbalance - (y(i, a) - y(i - 1, a))).abs();
-            let stationarity = of_force(a, defect, ROUNDINGS * f64::EPSILON * terms);
-            add(Residuals { stationarity, ..Residuals::default() });
-        }
+            of_force(a, defect, ROUNDINGS * f64::EPSILON * terms)
+        };
+        let of_block = |block: &[usize]| block.iter().map(at).fold(Residual::default(), Residual::larger);
+        let blocks: Vec<Residual> = d.free_vertices(i).par_chunks(BLOCK).map(of_block).collect();
+        let stationarity = blocks.into_iter().fold(Residual::default(), Residual::larger);
+        add(Residuals { stationarity, ..Residuals::default() });
         for a in (0..area.len()).filter(|&a| d.unknown(i, a).is_none()) {
             let primal = of_length((u[a] - d.height(i, a).unwrap_or(0.0)).abs());
             add(Residuals { primal, ..Residuals::default() });

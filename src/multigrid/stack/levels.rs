@@ -1,10 +1,9 @@
 //! The problem of a stack on all levels.
 
-use sprs::CsMat;
-
 use super::level::{Free, StackLevel};
 use super::matrix::BlockMatrix;
 use crate::discretization::StackDiscretization;
+use crate::fem::StiffnessMatrix;
 use crate::multigrid::hierarchy::{Genealogy, Hierarchy, Pattern, Rows, Values, assemble, galerkin};
 use crate::parallel::blocks;
 use crate::parallel::prelude::*;
@@ -149,7 +148,7 @@ impl CommonRow {
 }
 
 /// `sum_i K_i / trace K_i`: what all membranes have in common.
-fn common_matrix(d: &StackDiscretization) -> CsMat<f64> {
+fn common_matrix(d: &StackDiscretization) -> StiffnessMatrix {
     let vertices = d.mesh().points().len();
     let membranes: Vec<usize> = (1..=d.membranes()).collect();
     let trace = |&i: &usize| (0..vertices).map(|a| d.diagonal(i, a)).sum::<f64>();
@@ -165,12 +164,12 @@ fn common_matrix(d: &StackDiscretization) -> CsMat<f64> {
                 all.map(|((&i, entry), scale)| scale * (entry + on_foundation(i)))
             };
             let [sum, terms] = [parts().sum::<f64>(), parts().map(f64::abs).sum()];
-            columns.push(b);
+            columns.push(b as u32);
             values.push(if sum.abs() < CANCELLED * terms { terms } else { sum });
         }
-        start.push(columns.len());
+        start.push(columns.len() as u32);
     }
-    CsMat::new((vertices, vertices), start, columns, values)
+    StiffnessMatrix::new((vertices, vertices), start, columns, values)
 }
 
 /// What the levels are made from, on one of them.
