@@ -10,7 +10,9 @@ use crate::cli::run::folder::Results;
 use crate::cli::run::pictures::Pictures;
 use crate::discretization::Discretization;
 use crate::estimate::ErrorBound;
+use crate::mesh::Mesh;
 use crate::output::{write_rim_vtp, write_stack_vtu, write_vtu};
+use crate::parallel::join;
 use crate::pictures::Drawing;
 use crate::pictures::membranes::{self, Picture};
 use crate::pictures::stack::{self, StackPicture};
@@ -33,27 +35,31 @@ pub(super) fn write_solution(
     });
     // The names of a mesh file are its author's; those of generators are known.
     let groups = matches!(case.mesh, MeshSource::File(_));
-    match (&**d, &**solution) {
+    let write = || match (&**d, &**solution) {
         (Discretization::Stack(d), ContactSolution::Stack(solution)) => {
-            results.write(SOLUTION, |out| write_stack_vtu(d, solution, bound, groups, out))?;
+            results.write(SOLUTION, |out| write_stack_vtu(d, solution, bound, groups, out))
         }
         (d, ContactSolution::Pair(solution)) => {
             let bound = bound.expect("a pair has a bound");
-            results.write(SOLUTION, |out| write_vtu(d.mesh(), solution, bound, out))?;
+            results.write(SOLUTION, |out| write_vtu(d.mesh(), solution, bound, out))
         }
         _ => unreachable!("the solution is one of its discretization"),
-    }
-    let rims: Vec<(usize, Rim)> = match &**solution {
-        ContactSolution::Pair(solution) => {
-            vec![(1, Rim::new(d.mesh(), &solution.gap(), solution.contact()))]
-        }
-        ContactSolution::Stack(solution) => {
-            let gaps = solution.gaps().iter();
-            gaps.map(|gap| (gap.number, Rim::new(d.mesh(), &gap.gap, &gap.contact))).collect()
-        }
     };
+    let (written, rims) = join(write, || rims(d.mesh(), solution));
+    written?;
     results.write(RIM, |out| write_rim_vtp(rims.iter().map(|(gap, rim)| (*gap, rim)), out))?;
     picture.write(|file, bytes| results.write(file, |out| out.write_all(bytes)))
+}
+
+/// The rims of all gaps, with their numbers.
+fn rims(mesh: &Mesh, solution: &ContactSolution) -> Vec<(usize, Rim)> {
+    match solution {
+        ContactSolution::Pair(solution) => vec![(1, Rim::new(mesh, &solution.gap(), solution.contact()))],
+        ContactSolution::Stack(solution) => {
+            let gaps = solution.gaps().iter();
+            gaps.map(|gap| (gap.number, Rim::new(mesh, &gap.gap, &gap.contact))).collect()
+        }
+    }
 }
 
 fn draw(title: &str, d: &Discretization, solution: &ContactSolution) -> Result<Drawing, String> {
