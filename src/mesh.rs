@@ -32,4 +32,5 @@ pub use views::{View, ViewError, ViewPlace, Views};
 #[cfg(feature = "cli")]
 pub(crate) use generate::MAX_VERTICES;
 pub(crate) use refine::Circle;
-pub(crate) use topology::{HalfEdge, HalfEdges, boundary_edges, corner_of};
+pub(crate) use topology::boundary_edges;
+pub(crate) use triangulation::{HalfEdge, HalfEdges, corner_of};

@@ -12,7 +12,7 @@ mod tests;
 mod winding;
 
 use super::{Groups, Mesh, VertexKind, Views};
-use crate::mesh::topology::{HalfEdge, HalfEdges, VertexTriangles};
+use crate::mesh::triangulation::{HalfEdge, HalfEdges, VertexTriangles};
 use crate::parallel::BLOCK;
 use crate::parallel::prelude::*;
 pub use error::MeshError;

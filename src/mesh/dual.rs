@@ -1,6 +1,7 @@
 //! The dual mesh `D_h` of section 4.2 and the triangulation `S_h` between it and `T_h`.
 
-use super::topology::{Midpoints, corner_of};
+use super::topology::Midpoints;
+use super::triangulation::corner_of;
 use super::{Mesh, MeshError, VertexKind};
 use crate::geometry::twice_signed_area;
 

@@ -1,12 +1,15 @@
 //! The mesh itself: what it consists of, and how it was refined.
 
+mod adjacency;
+
 use std::sync::{Arc, OnceLock};
 
 use super::ancestry::Parents;
 use super::groups::Groups;
-use super::topology::VertexTriangles;
 use super::views::Views;
 use crate::geometry::{distance_sq, twice_signed_area};
+pub(in crate::mesh) use adjacency::VertexTriangles;
+pub(crate) use adjacency::{HalfEdge, HalfEdges, corner_of};
 
 /// Where a vertex lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

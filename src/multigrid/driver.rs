@@ -84,18 +84,18 @@ mod tests {
         let limits = Limits::new(90, None, Instant::now(), None);
         let first = Found { violation: 1.0, ..Found::default() };
         let mut pace = Pace { factor, violation: 1.0, changes };
-        let (status, history) = run(&mut pace, first, 1.001e-6, 60, &limits).unwrap();
+        let (status, history) = run(&mut pace, first, 1e-6, 60, &limits).unwrap();
         (status, history.len() - 1)
     }
 
     #[test]
     fn it_stops_where_the_pace_leads_nowhere() {
-        assert_eq!(ends(0.1, 0), (Status::Solved, 6));
+        assert_eq!(ends(0.09, 0), (Status::Solved, 6));
         assert_eq!(ends(0.79, 0), (Status::Solved, 59));
-        // 0.8^60 is not small enough.
-        assert_eq!(ends(0.8, 0), (Status::Stalled, PATIENCE));
+        // 0.81^63 is not small enough.
+        assert_eq!(ends(0.81, 0), (Status::Stalled, PATIENCE));
         assert_eq!(ends(f64::NAN, 0), (Status::Stalled, PATIENCE));
         // A contact set that changes in the cycle that arrives has one more.
-        assert_eq!(ends(0.1, 50), (Status::Solved, 7));
+        assert_eq!(ends(0.09, 50), (Status::Solved, 7));
     }
 }

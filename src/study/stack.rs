@@ -144,7 +144,7 @@ mod tests {
     use super::*;
     use crate::mesh::{MeshSize, Pattern, generate};
     use crate::problem::StackCase;
-    use crate::solver::{ActiveSet, Auto};
+    use crate::solver::ActiveSet;
     use crate::study::{MEASURES, fitted_rate};
 
     fn levels(case: StackCase, parameters: &[(&str, f64)], cells: usize, count: usize) -> Vec<LevelErrors> {
@@ -157,7 +157,7 @@ mod tests {
         }
         let family = MeshFamily::of_domain(mesh, &domain);
         let options = SolverOptions { tolerance: 1e-9, ..SolverOptions::default() };
-        let mut study = StackStudy::new(exact, family, Box::new(Auto), options).unwrap();
+        let mut study = StackStudy::new(exact, family, Box::new(ActiveSet), options).unwrap();
         (0..count).map(|_| study.next_level().unwrap()).collect()
     }
 

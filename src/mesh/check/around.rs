@@ -7,7 +7,7 @@ use std::ops::Range;
 
 use super::boundary::BoundaryEdge;
 use super::quality::angles;
-use crate::mesh::topology::{VertexTriangles, corner_of};
+use crate::mesh::triangulation::{VertexTriangles, corner_of};
 use crate::parallel::blocks;
 use crate::parallel::prelude::*;
 

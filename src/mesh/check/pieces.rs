@@ -94,7 +94,7 @@ mod tests {
     use super::super::around::Around;
     use super::*;
     use crate::mesh::samples::square;
-    use crate::mesh::topology::VertexTriangles;
+    use crate::mesh::triangulation::VertexTriangles;
 
     /// `n x n` cells, every second of which in both directions is an island in a hole of the others.
     fn islands(n: usize) -> (Vec<[f64; 2]>, Vec<[usize; 3]>) {

@@ -71,8 +71,8 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::mesh::HalfEdges;
     use crate::mesh::samples::{assorted, irregular, renumbered, square};
-    use crate::mesh::topology::HalfEdges;
     use crate::mesh::{Pattern, l_shape};
 
     /// Rounding of sums over the triangles of small meshes of size one.

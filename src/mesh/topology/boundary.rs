@@ -20,8 +20,8 @@ pub(crate) fn boundary_edges(mesh: &Mesh) -> Vec<[usize; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::HalfEdges;
     use crate::mesh::samples::{assorted, renumbered};
-    use crate::mesh::topology::HalfEdges;
 
     #[test]
     fn they_are_those_with_one_triangle() {
