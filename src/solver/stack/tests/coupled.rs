@@ -277,7 +277,7 @@ fn where_it_stalls_the_active_set_method_takes_over() {
     assert_eq!((found.solver.as_str(), found.status), ("active-set", Status::Solved));
     assert!(found.choice.unwrap().ends_with("; multigrid stalled"));
     let methods: Vec<&str> = found.stalled.iter().map(|stalled| stalled.method.as_str()).collect();
-    assert_eq!(methods, ["multigrid on levels of 6 refinements", "multigrid on algebraic levels"]);
+    assert_eq!(methods, ["multigrid on levels of 5 refinements", "multigrid on algebraic levels"]);
     let found = chosen(100.0);
     assert_eq!((found.solver.as_str(), found.stalled.len()), ("multigrid", 0));
 }
