@@ -46,7 +46,7 @@ impl MembraneData {
             _ => Some(means(mesh, &membrane.foundation, &format!("foundation c{name}"), rule, NOT_NEGATIVE)?),
         };
         let over_vertices = |term: &(dyn Fn(usize) -> f64 + Sync)| -> Vec<f64> {
-            let at = |a: usize| mesh.around().triangles(a).map(|t| term(t)).sum();
+            let at = |a: usize| mesh.around().triangles(a).map(term).sum();
             (0..mesh.points().len()).into_par_iter().map(at).collect()
         };
         let moments = moments(mesh, &membrane.load, &format!("load f{name}"), rule)?;

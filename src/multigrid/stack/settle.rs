@@ -110,8 +110,8 @@ impl Run {
         }
         let mut first = start;
         let mut action = 0.0;
-        for i in start..end {
-            action -= r[i];
+        for (i, r) in (start..end).zip(&r[start..end]) {
+            action -= r;
             let is_last = i + 1 == end;
             if is_last && !rests_below {
                 violation = larger(violation, action.abs() - rounding);

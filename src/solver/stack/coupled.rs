@@ -60,12 +60,12 @@ fn at_rest(d: &StackDiscretization) -> Displacements {
         (1..=d.membranes()).map(|i| (0..vertices).map(|a| height(i, a)).collect()).collect();
     let resting = d.resting();
     let mut layers = Vec::new();
-    for a in 0..vertices {
+    (0..vertices).for_each(|a| {
         for segment in d.segments(a, &resting, &mut layers) {
             if let Some(height) = segment.above.or(segment.below) {
                 segment.layers.for_each(|i| u[i - 1][a] = height);
             }
         }
-    }
+    });
     u
 }
