@@ -3,6 +3,7 @@
 use std::fs::Permissions;
 use std::io::{self, BufWriter, Seek, Write};
 use std::path::{Path, PathBuf};
+use std::thread::{self, JoinHandle};
 
 use tempfile::{Builder, NamedTempFile};
 
@@ -38,9 +39,17 @@ pub fn write_atomically(
 /// when the run was ended in between.
 pub struct FileSet {
     folder: PathBuf,
-    written: Vec<(NamedTempFile, PathBuf)>,
+    written: Vec<Written>,
     /// Names of which those that are not written go.
     replaced: Vec<PathBuf>,
+}
+
+/// A whole file that has not got its name yet.
+struct Written {
+    file: NamedTempFile,
+    path: PathBuf,
+    /// Until it is on the disk: nobody waits for that before the file gets its name.
+    synced: JoinHandle<io::Result<()>>,
 }
 
 impl FileSet {
@@ -69,15 +78,16 @@ impl FileSet {
         write(&mut buffered)?;
         buffered.flush()?;
         drop(buffered);
-        file.as_file().sync_all()?;
-        self.written.push((file, self.folder.join(name)));
+        let on_disk = file.as_file().try_clone()?;
+        let synced = thread::spawn(move || on_disk.sync_all());
+        self.written.push(Written { file, path: self.folder.join(name), synced });
         Ok(())
     }
 
-    /// Gives the files their names.
+    /// Gives the files their names, once all of them are on the disk.
     ///
     /// # Errors
-    /// When the folder does not allow it, or another folder lies in the place of a file; the file is named.
+    /// When one does not come there, the folder does not allow it, or another folder lies in the place of a file; the file is named.
     pub fn publish(self) -> io::Result<()> {
         self.place().map_err(|(path, error)| {
             let name = path.file_name().unwrap_or_default().display();
@@ -87,13 +97,20 @@ impl FileSet {
 
     /// As [`publish`](Self::publish), with the path that is in the way beside the error.
     fn place(self) -> Result<(), (PathBuf, io::Error)> {
+        let mut on_disk = Vec::new();
+        for Written { file, path, synced } in self.written {
+            match synced.join().expect("syncing does not panic") {
+                Ok(()) => on_disk.push((file, path)),
+                Err(error) => return Err((path, error)),
+            }
+        }
         let remove = |path: &Path| remove(path).map_err(|error| (path.to_path_buf(), error));
-        if let [_, .., (_, seal)] = self.written.as_slice() {
+        if let [_, .., (_, seal)] = on_disk.as_slice() {
             remove(seal)?;
         }
-        let is_written = |path: &PathBuf| self.written.iter().any(|(_, written)| written == path);
+        let is_written = |path: &PathBuf| on_disk.iter().any(|(_, written)| written == path);
         self.replaced.iter().filter(|path| !is_written(path)).try_for_each(|path| remove(path))?;
-        self.written.into_iter().try_for_each(|(file, path)| match file.persist(&path) {
+        on_disk.into_iter().try_for_each(|(file, path)| match file.persist(&path) {
             Ok(_) => Ok(()),
             Err(error) => Err((path, error.error)),
         })

@@ -32,9 +32,9 @@ pub enum SolverName {
     Clarabel,
     /// The operator-splitting solver OSQP.
     Osqp,
-    /// The active set method on the decoupled problem.
+    /// The active set method.
     ActiveSet,
-    /// Multigrid on the decoupled problem.
+    /// Multigrid.
     Multigrid,
     /// Whichever built-in solver suits the mesh.
     Auto,
