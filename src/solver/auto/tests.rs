@@ -75,3 +75,20 @@ fn where_multigrid_stalls_on_a_stack_too() {
     let found = chosen(&problem, [1.0, 1.0], 64);
     assert_eq!((found.solver.as_str(), found.stalled.len()), ("multigrid", 0));
 }
+
+/// Whatever has stalled on a coupled stack, the active set method takes over, says why, and is not asked about it again.
+#[test]
+fn where_multigrid_has_stalled_on_coupled_membranes() {
+    let sheet = |load: f64| Membrane::new(1.0).load(load);
+    let problem = ContactProblem::stack().membrane(sheet(-9.0)).membrane(sheet(9.0)).build().unwrap();
+    let mesh = rectangle([0.0, 0.0], [1.0; 2], [32; 2], Pattern::Crossed).unwrap();
+    let d = StackDiscretization::new(&problem, mesh).unwrap();
+    let stalled = vec![Stalled { method: "multigrid on algebraic levels".into(), iterations: 7 }];
+    let mut auto = PreparedAuto { multigrid: Err(stalled.clone()), ..PreparedAuto::new((&d).into()) };
+    for _ in 0..2 {
+        let found = auto.solve(&SolverOptions::default()).unwrap().statistics;
+        assert_eq!((found.solver.as_str(), found.status), ("active-set", Status::Solved));
+        assert!(found.choice.expect("it was left open").ends_with("; multigrid stalled"));
+        assert_eq!(found.stalled, stalled);
+    }
+}

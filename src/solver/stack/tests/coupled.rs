@@ -281,3 +281,24 @@ fn where_it_stalls_the_active_set_method_takes_over() {
     let found = chosen(100.0);
     assert_eq!((found.solver.as_str(), found.stalled.len()), ("multigrid", 0));
 }
+
+/// Very flat crossed cells have large positive entries off the diagonal: coarser meshes are no good for them.
+#[test]
+fn where_it_stalls_on_the_refinements_algebraic_levels_take_over() {
+    let sheet = |load: f64| Membrane::new(1.0).load(load);
+    let problem = ContactProblem::stack().membrane(sheet(-1e3).height(0.1)).membrane(sheet(1e3)).floor(-1e3);
+    let problem = problem.build().unwrap();
+    let found = |height: f64| {
+        let mesh = rectangle([0.0, 0.0], [1.0, height], [64; 2], Pattern::Crossed).unwrap();
+        let d = posed(&problem, &mesh);
+        let found = Auto.solve_stack(&d, &SolverOptions::default()).unwrap();
+        certify_stack(&d, found, SolverOptions::default().tolerance).unwrap().statistics().clone()
+    };
+    let flat = found(0.01);
+    assert_eq!((flat.solver.as_str(), flat.status), ("multigrid", Status::Solved));
+    let methods: Vec<&str> = flat.stalled.iter().map(|stalled| stalled.method.as_str()).collect();
+    assert_eq!(methods, ["multigrid on levels of 6 refinements"]);
+    assert!(flat.iterations <= 2 * HARD_CYCLES, "{}", flat.iterations);
+    let square = found(1.0);
+    assert_eq!((square.solver.as_str(), square.stalled.len()), ("multigrid", 0));
+}
