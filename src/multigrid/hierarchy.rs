@@ -17,7 +17,7 @@ mod tests;
 pub(crate) use coloring::Coloring;
 pub(crate) use galerkin::{RowSum, galerkin};
 pub(crate) use genealogy::{Genealogy, Mean};
-pub(crate) use matrix::{Pattern, Rows, Values, assemble};
+pub(crate) use matrix::{Pattern, Rows, Values, assemble, row_product};
 pub(crate) use runs::{LONGEST, Runs};
 pub(crate) use transfer::Transfer;
 

@@ -59,25 +59,30 @@ impl Pattern {
     }
 }
 
+/// `sum_j a_j x_j` over the columns of a row.
+#[inline(always)]
+pub(crate) fn row_product(mut columns: &[u32], mut values: &[f64], x: &[f64]) -> f64 {
+    let mut sum = 0.0;
+    // Four at once: most rows have four or six entries, and a loop costs more than they do.
+    while let (Some(([j, k, l, m], columns_left)), Some(([a, b, c, d], values_left))) =
+        (columns.split_first_chunk::<4>(), values.split_first_chunk::<4>())
+    {
+        let x = |j: &u32| x[*j as usize];
+        sum += (a * x(j) + b * x(k)) + (c * x(l) + d * x(m));
+        (columns, values) = (columns_left, values_left);
+    }
+    for (&j, &a) in columns.iter().zip(values) {
+        sum += a * x[j as usize];
+    }
+    sum
+}
+
 impl Values {
     /// `sum_j a_ij x_j` over the columns off the diagonal.
     #[inline(always)]
     pub(crate) fn off_diagonal_product(&self, pattern: &Pattern, i: usize, x: &[f64]) -> f64 {
         let range = pattern.range(i);
-        let (mut columns, mut values) = (&pattern.column[range.clone()], &self.off_diagonal[range]);
-        let mut sum = 0.0;
-        // Four at once: most rows have four or six entries, and a loop costs more than they do.
-        while let (Some(([j, k, l, m], columns_left)), Some(([a, b, c, d], values_left))) =
-            (columns.split_first_chunk::<4>(), values.split_first_chunk::<4>())
-        {
-            let x = |j: &u32| x[*j as usize];
-            sum += (a * x(j) + b * x(k)) + (c * x(l) + d * x(m));
-            (columns, values) = (columns_left, values_left);
-        }
-        for (&j, &a) in columns.iter().zip(values) {
-            sum += a * x[j as usize];
-        }
-        sum
+        row_product(&pattern.column[range.clone()], &self.off_diagonal[range], x)
     }
 
     /// For rows that have the entries of the `first` one, each in the next column.

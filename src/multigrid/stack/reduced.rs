@@ -1,6 +1,7 @@
 //! The matrices of coarser levels: rows are the blocks that move.
 
 use super::partition::Partition;
+use crate::multigrid::hierarchy::row_product;
 use crate::parallel::prelude::*;
 
 /// Parts that share the memory in which rows are made.
@@ -102,18 +103,14 @@ impl Reduced {
     pub(super) fn relax_from_zero(&self, b: &[f64], x: &mut [f64]) {
         x.fill(0.0);
         for (first, part) in self.parts() {
-            for i in (0..part.inverse.len()).filter(|&i| part.inverse[i] != 0.0) {
-                x[first + i] = (b[first + i] - part.product(i, x)) * part.inverse[i];
-            }
+            (0..part.inverse.len()).for_each(|i| part.relax(first, i, b, x));
         }
     }
 
     /// A sweep in the other order.
     pub(super) fn relax_backwards(&self, b: &[f64], x: &mut [f64]) {
         for (first, part) in self.parts().rev() {
-            for i in (0..part.inverse.len()).rev().filter(|&i| part.inverse[i] != 0.0) {
-                x[first + i] = (b[first + i] - part.product(i, x)) * part.inverse[i];
-            }
+            (0..part.inverse.len()).rev().for_each(|i| part.relax(first, i, b, x));
         }
     }
 
@@ -137,19 +134,15 @@ impl Part {
     #[inline(always)]
     fn product(&self, i: usize, x: &[f64]) -> f64 {
         let range = self.range(i);
-        let (mut columns, mut values) = (&self.column[range.clone()], &self.value[range]);
-        let mut sum = 0.0;
-        while let (Some(([j, k, l, m], columns_left)), Some(([a, b, c, d], values_left))) =
-            (columns.split_first_chunk::<4>(), values.split_first_chunk::<4>())
-        {
-            let x = |j: &u32| x[*j as usize];
-            sum += (a * x(j) + b * x(k)) + (c * x(l) + d * x(m));
-            (columns, values) = (columns_left, values_left);
+        row_product(&self.column[range.clone()], &self.value[range], x)
+    }
+
+    /// Gauss-Seidel for row `i`, of a part that begins at the entry `first`; an empty row is left as it is.
+    #[inline(always)]
+    fn relax(&self, first: usize, i: usize, b: &[f64], x: &mut [f64]) {
+        if self.inverse[i] != 0.0 {
+            x[first + i] = (b[first + i] - self.product(i, x)) * self.inverse[i];
         }
-        for (&j, &a) in columns.iter().zip(values) {
-            sum += a * x[j as usize];
-        }
-        sum
     }
 
     /// Makes the rows of the `dirty` ones of the level anew; `first` is the one with which it begins.

@@ -1,30 +1,12 @@
 //! The outline of a mesh.
 
+use crate::mesh::HalfEdges;
+
 /// The edges that belong to one triangle only, in increasing order of their lower and upper ends. Linear time.
 pub(crate) fn boundary_edges(vertices: usize, triangles: &[[usize; 3]]) -> Vec<[usize; 2]> {
-    let sides = || triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
-    // The upper ends of all sides, those with one lower end together: counted, then filled in.
-    let mut start = vec![0; vertices + 1];
-    sides().for_each(|[a, b]| start[a.min(b)] += 1);
-    let mut end = 0;
-    for row in &mut start {
-        end += std::mem::replace(row, end);
-    }
-    let mut uppers = vec![0; end];
-    let mut next = start.clone();
-    for [a, b] in sides() {
-        let next = &mut next[a.min(b)];
-        uppers[*next] = a.max(b);
-        *next += 1;
-    }
-    let mut alone = Vec::new();
-    for (lower, row) in start.windows(2).enumerate() {
-        let row = &mut uppers[row[0]..row[1]];
-        row.sort_unstable();
-        let once = row.chunk_by(|a, b| a == b).filter(|same| same.len() == 1);
-        alone.extend(once.map(|same| [lower, same[0]]));
-    }
-    alone
+    let half_edges = HalfEdges::new(vertices, triangles);
+    let alone = half_edges.edges().filter(|(_, _, sides)| sides.len() == 1);
+    alone.map(|(lower, upper, _)| [lower, upper]).collect()
 }
 
 #[cfg(test)]
