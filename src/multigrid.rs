@@ -7,6 +7,8 @@ mod driver;
 pub(crate) mod half;
 pub(crate) mod hierarchy;
 pub(crate) mod linear;
+pub(crate) mod membrane;
+pub(crate) mod patches;
 pub(crate) mod stack;
 pub(crate) mod sweep;
 pub(crate) mod truncation;

@@ -39,6 +39,30 @@ impl Parents {
     pub fn ends(&self) -> &[[u32; 2]] {
         &self.ends
     }
+
+    /// The triangles of which those of a mesh that is refined uniformly are parts.
+    ///
+    /// All vertices of a part are corners of its triangle or midpoints of the edges: they do not lie on one line, so that their parents
+    /// are the three corners. Each triangle is taken where it has the part along the edge from the first of its corners.
+    pub(crate) fn coarser(&self, triangles: &[[usize; 3]]) -> Vec<[usize; 3]> {
+        let ends = |v: usize| self.ends[v].map(|a| a as usize);
+        let whole = |&[p, q, r]: &[usize; 3]| {
+            [[p, q, r], [q, r, p], [r, p, q]].into_iter().find_map(|[p, q, r]| {
+                let [a, same] = ends(p);
+                let other = |[x, y]: [usize; 2]| if x == a { y } else { x };
+                let along = ends(q);
+                let b = other(along);
+                let beside = ends(r);
+                let c = if beside[0] == a || beside[0] == b { beside[1] } else { beside[0] };
+                let on_edge = along[0] == along[1] || along.contains(&a);
+                (a == same && on_edge && a < b && a < c).then_some([a, b, c])
+            })
+        };
+        let parts = triangles.par_chunks(BLOCK);
+        let wholes: Vec<Vec<[usize; 3]>> =
+            parts.map(|part| part.iter().filter_map(whole).collect()).collect();
+        wholes.concat()
+    }
 }
 
 #[cfg(test)]

@@ -64,7 +64,7 @@ impl<'h> CoarseLevels<'h> {
         let coarser = || hierarchy.levels()[..levels].iter();
         let zeros = || coarser().map(|level| vec![0.0; level.pattern.rows()]).collect();
         let matrices = match obstacle {
-            true => Matrices::Truncated(Truncation::new(hierarchy)),
+            true => Matrices::Truncated(Truncation::new(hierarchy, levels)),
             false => Matrices::Whole(hierarchy),
         };
         let direct = Direct::new(&hierarchy.levels()[0])?;
@@ -98,29 +98,54 @@ impl<'h> CoarseLevels<'h> {
         frozen: &[bool],
         changed: &[u32],
     ) -> Result<(), NotFactored> {
-        let mut twice_up_to = 0;
+        let mut twice = 0;
         if let Matrices::Truncated(truncation) = &mut self.matrices {
             if truncation.update(finest, frozen, changed) {
                 self.direct.refactor(truncation.values(0))?;
             }
-            twice_up_to = finest.saturating_sub(if changed.is_empty() { TWICE } else { UNSETTLED_TWICE });
+            twice = twice_up_to(finest, !changed.is_empty());
         }
-        let visits = visits(self.hierarchy, finest, twice_up_to);
-        self.cycle(finest - 1, &visits)
+        let levels = &self.hierarchy.levels()[..=finest];
+        let rows: Vec<usize> = levels.iter().map(|level| level.pattern.rows()).collect();
+        self.cycle(finest - 1, &visits(&rows, twice)).map(|_| ())
+    }
+
+    /// The matrix of the finest of these levels has these entries now: of the diagonal, and off it in the order of the pattern.
+    pub(super) fn replace(&mut self, diagonal: &[f64], off_diagonal: &[f64]) -> Result<(), NotFactored> {
+        if let Matrices::Truncated(truncation) = &mut self.matrices
+            && truncation.replace(diagonal, off_diagonal)
+        {
+            self.direct.refactor(truncation.values(0))?;
+        }
+        Ok(())
+    }
+
+    /// The functional on a level, to be filled.
+    pub(super) fn functional(&mut self, l: usize) -> &mut [f64] {
+        &mut self.b[l]
+    }
+
+    /// `1/2 x'A x` on the finest of these levels.
+    #[cfg(test)]
+    pub(super) fn energy(&self, x: &[f64]) -> f64 {
+        let l = self.x.len() - 1;
+        let (level, values) = (&self.hierarchy.levels()[l], self.matrices.values(l));
+        let product =
+            |i: usize| values.diagonal[i] * x[i] + values.off_diagonal_product(&level.pattern, i, x);
+        (0..x.len()).map(|i| 0.5 * x[i] * product(i)).sum()
     }
 
     /// A cycle on level `l` for the functional `b`, with one correction from each level below.
     pub(super) fn v_cycle(&mut self, l: usize, b: &[f64]) -> Result<&[f64], NotFactored> {
         self.b[l].copy_from_slice(b);
-        self.cycle(l, &vec![1; l + 1])?;
-        Ok(&self.x[l])
+        self.cycle(l, &vec![1; l + 1])
     }
 
-    /// A cycle on level `l` from zero.
-    fn cycle(&mut self, l: usize, visits: &[usize]) -> Result<(), NotFactored> {
+    /// A cycle on level `l` from zero, for the functional there, with so many visits of each level: the correction.
+    pub(super) fn cycle(&mut self, l: usize, visits: &[usize]) -> Result<&[f64], NotFactored> {
         if l == 0 {
             self.x[0] = self.direct.solve(&self.b[0])?;
-            return Ok(());
+            return Ok(&self.x[0]);
         }
         self.descend(l);
         self.cycle(l - 1, visits)?;
@@ -129,7 +154,7 @@ impl<'h> CoarseLevels<'h> {
             self.cycle(l - 1, visits)?;
         }
         self.ascend(l, false);
-        Ok(())
+        Ok(&self.x[l])
     }
 
     /// From zero to the functional on the level below.
@@ -149,16 +174,23 @@ impl<'h> CoarseLevels<'h> {
     }
 }
 
-/// How often a cycle below `finest` comes to each level below: twice as often as to the level above, or as often. Levels above
-/// `twice_up_to` have one correction, and so has every level at which two would be too much work.
-fn visits(hierarchy: &Hierarchy, finest: usize, twice_up_to: usize) -> Vec<usize> {
-    let rows = |l: usize| hierarchy.levels()[l].pattern.rows() as f64;
+/// Levels up to this one may have two corrections; they have to be more where the contact set has changed.
+pub(super) fn twice_up_to(finest: usize, has_changed: bool) -> usize {
+    finest.saturating_sub(if has_changed { UNSETTLED_TWICE } else { TWICE })
+}
+
+/// How often a cycle below the last of these levels, which have so many rows, comes to each of the others: twice as often as to the
+/// level above, or as often. Levels above `twice_up_to` have one correction, and so has every level at which two would be too much
+/// work.
+pub(super) fn visits(rows: &[usize], twice_up_to: usize) -> Vec<usize> {
+    let finest = rows.len() - 1;
     let mut visits = vec![1; finest];
-    let mut allowed = rows(finest);
+    let mut allowed = rows[finest] as f64;
     for l in (0..finest).rev() {
         allowed *= SHRINKING;
         if l + 1 < finest {
-            let twice = EXACT <= l && l < twice_up_to && 2.0 * visits[l + 1] as f64 * rows(l) <= allowed;
+            let work = 2.0 * visits[l + 1] as f64 * rows[l] as f64;
+            let twice = EXACT <= l && l < twice_up_to && work <= allowed;
             visits[l] = if twice { 2 * visits[l + 1] } else { visits[l + 1] };
         }
     }

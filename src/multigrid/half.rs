@@ -17,10 +17,10 @@ use crate::qp::{Limits, Status};
 pub(crate) const MAX_CYCLES: usize = 200;
 
 /// Cycles on a coarser level: its error is then well below that of its discretisation.
-const COARSE_CYCLES: usize = 2;
+pub(super) const COARSE_CYCLES: usize = 2;
 
 /// Two energies that differ by less than this fraction may do so by the rounding of their sums.
-const ENERGY_ROUNDING: f64 = 1e-12;
+pub(super) const ENERGY_ROUNDING: f64 = 1e-12;
 
 /// `K x - y = b`, `x >= lower`, `y >= 0`, `y'(x - lower) = 0` at the vertices that are not held. Vectors are over the rows of
 /// the finest level.
@@ -30,8 +30,10 @@ pub(crate) struct HalfProblem {
     pub(crate) height: Vec<f64>,
     /// Zero for the gap; minus infinity for the sum, which has no obstacle.
     pub(crate) lower: f64,
-    /// What makes of a residual a fraction of the tolerance.
+    /// What makes of a residual a multiple of its unit.
     pub(crate) weight: Vec<f64>,
+    /// The largest weighted residual that is as good as none.
+    pub(crate) tolerance: f64,
     /// A guess to start from in place of nested iteration.
     pub(crate) start: Option<Vec<f64>>,
 }
@@ -54,12 +56,13 @@ pub(crate) fn solve(
     problem: HalfProblem,
     limits: &Limits,
 ) -> Result<HalfSolution, NotFactored> {
-    let HalfProblem { load, height, lower, weight, start } = problem;
+    let HalfProblem { load, height, lower, weight, tolerance, start } = problem;
     let (loads, heights) = hierarchy.lifted(load, height);
     let mut coarse = CoarseLevels::new(hierarchy, hierarchy.finest(), lower.is_finite())?;
     let unweighted = vec![1.0; hierarchy.levels()[hierarchy.finest() - 1].pattern.rows()];
     let on_level = |l: usize| {
-        let (weight, tolerance) = if l == hierarchy.finest() { (&weight, 1.0) } else { (&unweighted, 0.0) };
+        let (weight, tolerance) =
+            if l == hierarchy.finest() { (&weight, tolerance) } else { (&unweighted, 0.0) };
         Bounded { level: &hierarchy.levels()[l], b: &loads[l], lower, weight, tolerance }
     };
     let mut cycles = Vec::new();

@@ -15,7 +15,7 @@ const COARSE_SWEEPS: usize = 2;
 
 /// What rounding may leave of a residual, as a fraction of the diagonal term in it: a quarter of what the certificate allows, for
 /// either half.
-const ROUNDING: f64 = 16.0 * f64::EPSILON;
+pub(super) const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// The problem on a level: minimise `1/2 x'A x - b'x` subject to `x >= lower`.
 #[derive(Clone, Copy)]
@@ -344,6 +344,6 @@ fn relax_in_turn(level: &Level, values: &Values, b: &[f64], run: usize, x: &mut 
 
 /// The larger of two numbers that are not NaN; a NaN as the first one is kept.
 #[inline(always)]
-fn larger(a: f64, b: f64) -> f64 {
+pub(super) fn larger(a: f64, b: f64) -> f64 {
     if a < b { b } else { a }
 }

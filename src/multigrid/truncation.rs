@@ -6,6 +6,9 @@
 
 use crate::multigrid::hierarchy::{Hierarchy, RowSum, Transfer, Values};
 
+/// An entry that differs by less than this fraction of the whole diagonal does so by the order of a sum.
+const UNCHANGED: f64 = 1e-12;
+
 /// The truncated matrices below a finest level.
 pub(crate) struct Truncation<'h> {
     hierarchy: &'h Hierarchy,
@@ -16,12 +19,12 @@ pub(crate) struct Truncation<'h> {
 }
 
 impl<'h> Truncation<'h> {
-    /// Without matrices yet: call [`reset`](Self::reset) next.
-    pub(crate) fn new(hierarchy: &'h Hierarchy) -> Self {
-        let sizes = || hierarchy.levels()[..hierarchy.finest()].iter().map(|level| level.pattern.rows());
+    /// Of the levels `0..levels`, without matrices yet: call [`reset`](Self::reset) next.
+    pub(crate) fn new(hierarchy: &'h Hierarchy, levels: usize) -> Self {
+        let sizes = || hierarchy.levels()[..levels].iter().map(|level| level.pattern.rows());
         Self {
             hierarchy,
-            values: vec![Values::default(); hierarchy.finest()],
+            values: vec![Values::default(); levels],
             sums: sizes().map(RowSum::new).collect(),
             marked: sizes().map(|rows| vec![false; rows]).collect(),
         }
@@ -45,7 +48,37 @@ impl<'h> Truncation<'h> {
         // An entry of the matrix is cut off with its row or its column. Neighbours in contact have no entries left.
         let neighbours = changed.iter().flat_map(|&i| top.pattern.row(i as usize));
         let neighbours = neighbours.filter(|&&j| !frozen[j as usize]);
-        let mut rows: Vec<u32> = changed.iter().chain(neighbours).copied().collect();
+        let rows: Vec<u32> = changed.iter().chain(neighbours).copied().collect();
+        self.follow(finest, rows, Some(frozen))
+    }
+
+    /// The matrix of the finest of these levels has these entries now: of the diagonal, and off it in the order of the pattern. Returns
+    /// whether that has reached level 0.
+    pub(crate) fn replace(&mut self, diagonal: &[f64], off_diagonal: &[f64]) -> bool {
+        let finest = self.values.len() - 1;
+        let level = &self.hierarchy.levels()[finest];
+        let values = &mut self.values[finest];
+        let mut rows = Vec::new();
+        for i in (0..level.pattern.rows()).filter(|&i| !level.is_held(i)) {
+            let range = level.pattern.range(i);
+            let same = |a: f64, b: f64| (a - b).abs() <= UNCHANGED * level.values.diagonal[i];
+            let off = values.off_diagonal[range.clone()].iter().zip(&off_diagonal[range.clone()]);
+            if same(values.diagonal[i], diagonal[i]) && off.into_iter().all(|(&a, &b)| same(a, b)) {
+                continue;
+            }
+            values.part(level.runs.with_row(i));
+            let mut entries = off_diagonal[range].iter();
+            values.set_row(&level.pattern, i, |column| {
+                if column == i { diagonal[i] } else { *entries.next().expect("a row has as many entries") }
+            });
+            rows.push(i as u32);
+        }
+        self.follow(finest, rows, None)
+    }
+
+    /// Makes the matrices below the level `finest` follow these of its rows: those of its whole matrix where they are not `frozen`, else those
+    /// that hold now. Returns whether that has reached level 0.
+    fn follow(&mut self, finest: usize, mut rows: Vec<u32>, frozen: Option<&[bool]>) -> bool {
         for l in (0..finest).rev() {
             let fine = &self.hierarchy.levels()[l + 1];
             rows = parents(&fine.transfer, &rows, &mut self.marked[l]);
@@ -58,10 +91,11 @@ impl<'h> Truncation<'h> {
                 }
                 below[l].part(run);
                 let sum = &mut self.sums[l];
-                if l + 1 == finest {
-                    sum.gather((&fine.pattern, &fine.values), &fine.transfer, a as usize, |i| frozen[i]);
-                } else {
-                    sum.gather((&fine.pattern, &above[0]), &fine.transfer, a as usize, |_| false);
+                match frozen.filter(|_| l + 1 == finest) {
+                    Some(frozen) => {
+                        sum.gather((&fine.pattern, &fine.values), &fine.transfer, a as usize, |i| frozen[i]);
+                    }
+                    None => sum.gather((&fine.pattern, &above[0]), &fine.transfer, a as usize, |_| false),
                 }
                 below[l].set_row(&level.pattern, a as usize, |column| sum.at(column));
             }

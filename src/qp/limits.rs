@@ -68,6 +68,11 @@ impl Limits {
         Self { iterations, ..self.clone() }
     }
 
+    /// What is left of them after so many iterations.
+    pub(crate) fn after(&self, iterations: usize) -> Self {
+        self.with_iterations(self.iterations.saturating_sub(iterations))
+    }
+
     /// Why not to go on after so many iterations.
     pub(crate) fn reached(&self, iterations: usize) -> Option<Status> {
         if iterations >= self.iterations {

@@ -3,12 +3,15 @@
 #[cfg(test)]
 mod tests;
 
+use std::borrow::Cow;
+
 use web_time::Instant;
 
 use super::{Candidate, ContactSolver, PreparedSolver, SolverError, SolverOptions, Stalled, pair, stack};
 use crate::discretization::{Discretization, PairDiscretization, StackDiscretization, Structure};
-use crate::mesh::Mesh;
-use crate::multigrid::hierarchy::{Genealogy, Hierarchy};
+use crate::fem::StiffnessMatrix;
+use crate::multigrid::hierarchy::{Genealogy, inside};
+use crate::multigrid::membrane::MembraneLevels;
 use crate::multigrid::stack::StackLevels;
 use crate::qp::Status;
 
@@ -55,39 +58,58 @@ impl ContactSolver for Multigrid {
 }
 
 /// The levels of what it solves.
-enum Levels {
+enum Levels<'d> {
     /// Of one matrix.
-    One(Hierarchy),
+    One(MembraneLevels<'d>),
     /// Of all membranes together.
     Coupled(StackLevels),
 }
 
-impl Levels {
-    fn new(structure: Structure, genealogy: &Genealogy) -> Self {
+impl<'d> Levels<'d> {
+    /// Those that follow the refinements that made the mesh, as far as they go, or algebraic ones.
+    fn new(structure: Structure<'d>, coarsening: Coarsening) -> Self {
+        let mesh = structure.mesh();
+        let one = |k: Cow<'d, StiffnessMatrix>, is_free: &[bool]| match coarsening {
+            Coarsening::Refinements => MembraneLevels::new(mesh, k, is_free),
+            Coarsening::Algebraic => MembraneLevels::algebraic(&k, is_free),
+        };
         match structure {
-            Structure::Pair(d) => Self::One(Hierarchy::of_pair(d, genealogy)),
+            Structure::Pair(d) => Self::One(one(Cow::Borrowed(d.stiffness()), &inside(mesh))),
             Structure::Obstacle(d) => {
                 let is_free: Vec<bool> =
-                    (0..d.mesh().points().len()).map(|a| d.unknown(1, a).is_some()).collect();
-                Self::One(Hierarchy::over(&d.matrix(1), &is_free, genealogy))
+                    (0..mesh.points().len()).map(|a| d.unknown(1, a).is_some()).collect();
+                Self::One(one(Cow::Owned(d.matrix(1)), &is_free))
             }
-            Structure::Coupled(d) => Self::Coupled(StackLevels::new(d, genealogy)),
+            Structure::Coupled(d) => {
+                let genealogy = match coarsening {
+                    Coarsening::Refinements => Genealogy::of(mesh),
+                    Coarsening::Algebraic => Genealogy::unknown(mesh.points().len()),
+                };
+                Self::Coupled(StackLevels::new(d, &genealogy))
+            }
         }
     }
 
     /// How many of them follow the refinements that made the mesh.
     fn refinements(&self) -> usize {
         match self {
-            Self::One(hierarchy) => hierarchy.refinements(),
+            Self::One(levels) => levels.refinements(),
             Self::Coupled(levels) => levels.hierarchy().refinements(),
         }
     }
 }
 
+/// How levels are made.
+#[derive(Debug, Clone, Copy)]
+enum Coarsening {
+    Refinements,
+    Algebraic,
+}
+
 /// Multigrid for one discretization, whose levels are made once.
 pub(super) struct PreparedMultigrid<'d> {
     structure: Structure<'d>,
-    levels: Option<Levels>,
+    levels: Option<Levels<'d>>,
     /// Levels that are not tried again: those of the refinements, once it has stalled on them.
     stalled: Vec<Stalled>,
 }
@@ -97,17 +119,17 @@ impl<'d> PreparedMultigrid<'d> {
         Self { structure, levels: None, stalled: Vec::new() }
     }
 
-    /// Solves on the levels that there are, else on those that are made by this genealogy; the time limit counts from `start`.
+    /// Solves on the levels that there are, else on those that are made like this; the time limit counts from `start`.
     fn attempt(
         &mut self,
-        genealogy: impl FnOnce(&Mesh) -> Genealogy,
+        coarsening: Coarsening,
         options: &SolverOptions,
         start: Instant,
     ) -> Result<Candidate, SolverError> {
         let begin = Instant::now();
         let levels = match &mut self.levels {
             Some(levels) => levels,
-            none => none.insert(Levels::new(self.structure, &genealogy(self.structure.mesh()))),
+            none => none.insert(Levels::new(self.structure, coarsening)),
         };
         let setup_seconds = begin.elapsed().as_secs_f64();
         let mut candidate = match (levels, self.structure) {
@@ -132,7 +154,7 @@ impl PreparedSolver for PreparedMultigrid<'_> {
     fn solve(&mut self, options: &SolverOptions) -> Result<Candidate, SolverError> {
         options.check()?;
         let start = Instant::now();
-        let mut candidate = self.attempt(Genealogy::of, options, start)?;
+        let mut candidate = self.attempt(Coarsening::Refinements, options, start)?;
         candidate.statistics.stalled.clone_from(&self.stalled);
         let refinements = self.levels.as_ref().map_or(0, Levels::refinements);
         if candidate.statistics.status != Status::Stalled || refinements == 0 {
@@ -140,8 +162,7 @@ impl PreparedSolver for PreparedMultigrid<'_> {
         }
         // On stretched triangles coarser meshes are no good: their neighbours along the long sides are hardly coupled.
         self.levels = None;
-        let unknown = |mesh: &Mesh| Genealogy::unknown(mesh.points().len());
-        let mut on_algebraic_levels = self.attempt(unknown, options, start)?;
+        let mut on_algebraic_levels = self.attempt(Coarsening::Algebraic, options, start)?;
         let method = format!("{NAME} on levels of {refinements} refinements");
         on_algebraic_levels.statistics = on_algebraic_levels.statistics.after(method, candidate.statistics);
         self.stalled.clone_from(&on_algebraic_levels.statistics.stalled);

@@ -62,7 +62,7 @@ fn truncated<'h>(
     one_in: usize,
 ) -> (Truncation<'h>, Vec<bool>) {
     let finest = hierarchy.finest();
-    let mut truncation = Truncation::new(hierarchy);
+    let mut truncation = Truncation::new(hierarchy, finest);
     truncation.reset(finest);
     let frozen: Vec<bool> = (0..hierarchy.vertex().len()).map(|_| random.below(one_in) == 0).collect();
     let changed: Vec<u32> = (0..frozen.len() as u32).filter(|&i| frozen[i as usize]).collect();
@@ -150,7 +150,7 @@ fn rows_that_truncation_couples_are_relaxed_one_after_the_other() {
 fn one_vertex_in_contact_couples_two_rows_of_a_colour() {
     let hierarchy = hierarchy_of(square(16));
     let (finest, l) = (hierarchy.finest(), hierarchy.finest() - 1);
-    let mut truncation = Truncation::new(&hierarchy);
+    let mut truncation = Truncation::new(&hierarchy, finest);
     let mut most = 0;
     for i in 0..hierarchy.vertex().len() {
         truncation.reset(finest);
@@ -219,7 +219,9 @@ fn a_cycle_costs_a_few_times_the_finest_level() {
         let finest = hierarchy.finest();
         let rows = |l: usize| hierarchy.levels()[l].pattern.rows() as f64;
         for twice_up_to in [finest - 2, finest - 1, finest] {
-            let visits = visits(&hierarchy, finest, twice_up_to);
+            let counts: Vec<usize> =
+                hierarchy.levels()[..=finest].iter().map(|level| level.pattern.rows()).collect();
+            let visits = visits(&counts, twice_up_to);
             let work: f64 = (0..finest).map(|l| visits[l] as f64 * rows(l)).sum();
             assert!(work < CYCLE * rows(finest), "{visits:?}");
             assert!(visits[1] > 1, "levels have two corrections where they can: {visits:?}");

@@ -122,7 +122,7 @@ impl Values {
     }
 
     /// Replaces the entries of the row `i`, whose columns stay.
-    pub(crate) fn set_row(&mut self, pattern: &Pattern, i: usize, entry: impl Fn(usize) -> f64) {
+    pub(crate) fn set_row(&mut self, pattern: &Pattern, i: usize, mut entry: impl FnMut(usize) -> f64) {
         for (&j, value) in pattern.row(i).iter().zip(&mut self.off_diagonal[pattern.range(i)]) {
             *value = entry(j as usize);
         }
@@ -221,8 +221,7 @@ pub(crate) fn compact_stiffness(k: &StiffnessMatrix, free: &[bool], order: &[u32
                 for (b, value) in row_of(k, a) {
                     if b == a {
                         diagonal = value;
-                    } else if value != 0.0 {
-                        // Opposite a right angle it is zero.
+                    } else {
                         rows.column.push(position[b]);
                         rows.off_diagonal.push(value);
                     }

@@ -4,8 +4,6 @@ use std::borrow::Cow;
 use std::sync::Arc;
 
 use crate::mesh::Parents;
-use crate::parallel::BLOCK;
-use crate::parallel::prelude::*;
 
 /// A vertex for each pixel of a map of 480 x 500: more triangles make no difference to the eye.
 const ENOUGH: usize = 2 * 480 * 500;
@@ -25,7 +23,7 @@ fn drawn_of<'a>(
     // The number of a vertex of the mesh that is drawn in the finest one.
     let mut number: Option<Vec<usize>> = None;
     for parents in ancestry.iter().rev().take_while(|_| triangles.len() > enough) {
-        let coarser = coarser(&drawn, parents);
+        let coarser = parents.coarser(&drawn);
         if coarser.len() < enough {
             break;
         }
@@ -36,29 +34,6 @@ fn drawn_of<'a>(
         triangles.iter_mut().flatten().for_each(|a| *a = number[*a]);
     }
     drawn
-}
-
-/// The triangles of which those of a mesh are parts.
-///
-/// All vertices of a part are corners of its triangle or midpoints of the edges: they do not lie on one line, so that their parents
-/// are the three corners. Each triangle is taken where it has the part along the edge from the first of its corners.
-fn coarser(triangles: &[[usize; 3]], parents: &Parents) -> Vec<[usize; 3]> {
-    let ends = |v: usize| parents.ends()[v].map(|a| a as usize);
-    let whole = |&[p, q, r]: &[usize; 3]| {
-        [[p, q, r], [q, r, p], [r, p, q]].into_iter().find_map(|[p, q, r]| {
-            let [a, same] = ends(p);
-            let other = |[x, y]: [usize; 2]| if x == a { y } else { x };
-            let along = ends(q);
-            let b = other(along);
-            let beside = ends(r);
-            let c = if beside[0] == a || beside[0] == b { beside[1] } else { beside[0] };
-            let on_edge = along[0] == along[1] || along.contains(&a);
-            (a == same && on_edge && a < b && a < c).then_some([a, b, c])
-        })
-    };
-    let parts = triangles.par_chunks(BLOCK);
-    let wholes: Vec<Vec<[usize; 3]>> = parts.map(|part| part.iter().filter_map(whole).collect()).collect();
-    wholes.concat()
 }
 
 /// For each vertex of the coarser mesh its number in the finest one; `number` has that of those of the finer one.
@@ -84,7 +59,7 @@ mod tests {
     }
 
     fn is_coarser(fine: &Mesh, coarse: &Mesh) {
-        let found = coarser(fine.triangles(), fine.ancestry().last().unwrap());
+        let found = fine.ancestry().last().unwrap().coarser(fine.triangles());
         assert_eq!(sorted(&found), sorted(coarse.triangles()));
     }
 

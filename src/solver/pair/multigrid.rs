@@ -4,8 +4,8 @@ use web_time::Instant;
 
 use super::decoupled::Decoupled;
 use crate::discretization::PairDiscretization;
-use crate::multigrid::half::{HalfProblem, MAX_CYCLES, solve};
-use crate::multigrid::hierarchy::Hierarchy;
+use crate::multigrid::half::{HalfProblem, MAX_CYCLES};
+use crate::multigrid::membrane::MembraneLevels;
 use crate::qp::Status;
 use crate::solver::{Candidate, SolverError, SolverOptions, StartingPoint, Statistics};
 
@@ -14,22 +14,21 @@ const SHARE: f64 = 0.5;
 
 /// Solves on these levels; the time limit counts from `start`. The seconds in the statistics are left to others.
 pub(in crate::solver) fn solve_on(
-    hierarchy: &Hierarchy,
+    levels: &MembraneLevels,
     d: &PairDiscretization,
     name: &str,
     options: &SolverOptions,
     start: Instant,
 ) -> Result<Candidate, SolverError> {
     let decoupled = Decoupled::new(d);
-    let [gap, sum] = halves(hierarchy, &decoupled, d, options);
+    let [gap, sum] = halves(levels, &decoupled, d, options);
     let limits = options.limits(MAX_CYCLES, start);
-    let (gap, sum) =
-        crate::parallel::join(|| solve(hierarchy, gap, &limits), || solve(hierarchy, sum, &limits));
+    let (gap, sum) = crate::parallel::join(|| levels.solve(gap, &limits), || levels.solve(sum, &limits));
     let (gap, sum) = (gap?, sum?);
     let level_iterations: Vec<usize> = gap.cycles.iter().zip(&sum.cycles).map(|(a, b)| *a.max(b)).collect();
     let (w, (s, y)) = crate::parallel::join(
-        || hierarchy.to_vertices(&gap.x),
-        || (hierarchy.to_vertices(&sum.x), hierarchy.to_vertices(&gap.y)),
+        || levels.to_vertices(&gap.x),
+        || (levels.to_vertices(&sum.x), levels.to_vertices(&gap.y)),
     );
     let status = if gap.status == Status::Solved { sum.status } else { gap.status };
     Ok(Candidate {
@@ -46,7 +45,7 @@ pub(in crate::solver) fn solve_on(
 
 /// The gap and the sum.
 fn halves(
-    hierarchy: &Hierarchy,
+    levels: &MembraneLevels,
     decoupled: &Decoupled,
     d: &PairDiscretization,
     options: &SolverOptions,
@@ -55,20 +54,22 @@ fn halves(
     let start = options.warm_start.as_ref().filter(|start| start.fits(d));
     let [mu1, mu2] = d.tension();
     let guess = |combine: &(dyn Fn(&StartingPoint, usize) -> f64 + Sync)| {
-        start.map(|start| hierarchy.to_rows(|a| combine(start, a)))
+        start.map(|start| levels.to_rows(|a| combine(start, a)))
     };
     let gap = HalfProblem {
-        load: hierarchy.to_rows(|a| decoupled.gap_load(a)),
-        height: hierarchy.to_rows(|a| d.height()[a]),
+        load: levels.to_rows(|a| decoupled.gap_load(a)),
+        height: levels.to_rows(|a| d.height()[a]),
         lower: 0.0,
-        weight: hierarchy.to_rows(|a| decoupled.gap_tension() / (force * d.dual_area()[a])),
+        weight: levels.to_rows(|a| decoupled.gap_tension() / (force * d.dual_area()[a])),
+        tolerance: 1.0,
         start: guess(&|start, a| start.displacement[0][a] - start.displacement[1][a]),
     };
     let sum = HalfProblem {
-        load: hierarchy.to_rows(|a| decoupled.sum_load(a)),
-        height: hierarchy.to_rows(|a| decoupled.sum_height(a)),
+        load: levels.to_rows(|a| decoupled.sum_load(a)),
+        height: levels.to_rows(|a| decoupled.sum_height(a)),
         lower: f64::NEG_INFINITY,
-        weight: hierarchy.to_rows(|a| 1.0 / (force * d.dual_area()[a])),
+        weight: levels.to_rows(|a| 1.0 / (force * d.dual_area()[a])),
+        tolerance: 1.0,
         start: guess(&|start, a| mu1 * start.displacement[0][a] + mu2 * start.displacement[1][a]),
     };
     [gap, sum]

@@ -16,8 +16,8 @@ use std::borrow::Cow;
 use web_time::Instant;
 
 use crate::discretization::StackDiscretization;
-use crate::multigrid::half::{HalfProblem, HalfSolution, MAX_CYCLES, solve};
-use crate::multigrid::hierarchy::Hierarchy;
+use crate::multigrid::half::{HalfProblem, HalfSolution, MAX_CYCLES};
+use crate::multigrid::membrane::MembraneLevels;
 use crate::numeric::largest;
 use crate::qp::Status;
 use crate::solver::{Candidate, SolverError, SolverOptions, Statistics};
@@ -34,7 +34,7 @@ const APPROACHES: usize = 3;
 
 /// Solves on these levels, and again from a nearer obstacle where that is far away.
 pub(in crate::solver) fn solve_on(
-    hierarchy: &Hierarchy,
+    levels: &MembraneLevels,
     d: &StackDiscretization,
     name: &str,
     options: &SolverOptions,
@@ -44,24 +44,24 @@ pub(in crate::solver) fn solve_on(
     let mut obstacle = Obstacle::of(d);
     let guess = options.warm_start.as_ref().filter(|guess| guess.fits_stack(d));
     let guess = guess.map(|guess| guess.displacement[0].as_slice());
-    let mut found = solve(hierarchy, obstacle.half(hierarchy, options, guess), &limits)?;
+    let mut found = levels.solve(obstacle.half(levels, options, guess), &limits)?;
     let mut level_iterations = std::mem::take(&mut found.cycles);
     let iterations = level_iterations.last_mut().expect("there is a finest level");
-    let mut u = obstacle.displacement(hierarchy, &found);
+    let mut u = obstacle.displacement(levels, &found);
     for _ in 0..APPROACHES {
         let may_go_on = matches!(found.status, Status::Solved | Status::Stalled);
         let Some(nearer) = obstacle.nearer(&u).filter(|_| may_go_on) else { break };
         obstacle = nearer;
         let left = options.max_iterations.unwrap_or(MAX_CYCLES).saturating_sub(*iterations);
-        let half = obstacle.half(hierarchy, options, Some(&u));
-        found = solve(hierarchy, half, &limits.with_iterations(left))?;
+        let half = obstacle.half(levels, options, Some(&u));
+        found = levels.solve(half, &limits.with_iterations(left))?;
         *iterations += found.cycles.iter().sum::<usize>();
-        u = obstacle.displacement(hierarchy, &found);
+        u = obstacle.displacement(levels, &found);
     }
     let iterations = *iterations;
     // Nothing touches the obstacle where it is not the real one, or the answer is that of another problem.
     let status = if obstacle.is_touched_where_raised(&u) { Status::Stalled } else { found.status };
-    let y = hierarchy.to_vertices(&found.y);
+    let y = levels.to_vertices(&found.y);
     Ok(Candidate {
         displacement: vec![u],
         multiplier: d.rows().iter().map(|row| y[row.vertex]).collect(),
@@ -97,23 +97,24 @@ impl<'d> Obstacle<'d> {
     }
 
     /// The problem of `v`; a guess of `u` to start from.
-    fn half(&self, hierarchy: &Hierarchy, options: &SolverOptions, guess: Option<&[f64]>) -> HalfProblem {
+    fn half(&self, levels: &MembraneLevels, options: &SolverOptions, guess: Option<&[f64]>) -> HalfProblem {
         let Self { d, psi, side, lower, .. } = self;
         let force = SHARE * options.tolerance * d.scales().force_density;
         // (F - K psi)_a
         let load = |a: usize| -d.imbalance(1, a, psi)[0];
         HalfProblem {
-            load: hierarchy.to_rows(|a| side * load(a)),
-            height: hierarchy.to_rows(|a| d.height(1, a).map_or(0.0, |g| side * (g - psi[a]))),
+            load: levels.to_rows(|a| side * load(a)),
+            height: levels.to_rows(|a| d.height(1, a).map_or(0.0, |g| side * (g - psi[a]))),
             lower: *lower,
-            weight: hierarchy.to_rows(|a| 1.0 / (force * d.dual_area()[a])),
-            start: guess.map(|u| hierarchy.to_rows(|a| side * (u[a] - psi[a]))),
+            weight: levels.to_rows(|a| 1.0 / (force * d.dual_area()[a])),
+            tolerance: 1.0,
+            start: guess.map(|u| levels.to_rows(|a| side * (u[a] - psi[a]))),
         }
     }
 
     /// `u` over vertices: where `v` is zero, it is `psi` to the last bit.
-    fn displacement(&self, hierarchy: &Hierarchy, found: &HalfSolution) -> Vec<f64> {
-        let v = hierarchy.to_vertices(&found.x);
+    fn displacement(&self, levels: &MembraneLevels, found: &HalfSolution) -> Vec<f64> {
+        let v = levels.to_vertices(&found.x);
         let u = |a: usize| match self.d.unknown(1, a) {
             Some(_) => self.psi[a] + self.side * v[a],
             None => self.d.height(1, a).unwrap_or(0.0),

@@ -6,7 +6,7 @@ use super::*;
 use crate::action::{StackSolution, certify_stack};
 use crate::mesh::samples::irregular;
 use crate::mesh::{Bisection, Mesh, MeshSize, Pattern, generate, rectangle};
-use crate::multigrid::hierarchy::Genealogy;
+use crate::multigrid::hierarchy::{Genealogy, Hierarchy};
 use crate::problem::{ContactProblem, Domain, Field, Function, Membrane};
 use crate::solver::{ActiveSet, ContactSolver, Multigrid};
 
@@ -231,9 +231,10 @@ fn an_obstacle_that_is_far_away_costs_no_digits() {
     let hierarchy = hierarchy(&d);
     let obstacle = Obstacle::of(&d);
     let limits = options().limits(MAX_CYCLES, Instant::now());
-    let found = solve(&hierarchy, obstacle.half(&hierarchy, &options(), None), &limits).unwrap();
+    let levels = MembraneLevels::Stored(hierarchy);
+    let found = levels.solve(obstacle.half(&levels, &options(), None), &limits).unwrap();
     let candidate = Candidate {
-        displacement: vec![obstacle.displacement(&hierarchy, &found)],
+        displacement: vec![obstacle.displacement(&levels, &found)],
         multiplier: vec![0.0; d.rows().len()],
         statistics: Statistics::of(Multigrid.name(), found.status),
     };
@@ -267,7 +268,9 @@ fn edges_that_are_fixed_in_part_have_levels() {
         let d = posed(&ContactProblem::obstacle(sheet, wavy()).unwrap(), &mesh);
         let hierarchy = hierarchy(&d);
         assert_eq!(hierarchy.refinements(), refinements, "{fixed} edges are fixed");
-        let candidate = solve_on(&hierarchy, &d, "multigrid", &options(), Instant::now()).unwrap();
+        let candidate =
+            solve_on(&MembraneLevels::Stored(hierarchy), &d, "multigrid", &options(), Instant::now())
+                .unwrap();
         let cycles = candidate.statistics.iterations;
         assert!(cycles <= SINGULAR_CYCLES, "{fixed} edges are fixed: {cycles}");
         let [found, exact] =

@@ -1,0 +1,281 @@
+//! A cycle's work on its finest level: correction, projected Gauss-Seidel, residual, restriction.
+
+use super::field::Field;
+use super::grid::Grid;
+use super::lanes::{LANES, Lanes};
+use super::matrix::Matrix;
+use super::transfer::{prolong_inside, prolong_interface, restrict_inside, restrict_interface};
+use crate::multigrid::sweep::{Found, ROUNDING, larger};
+
+/// The problem on a level: minimise `1/2 x'A x - b'x` where `x` is not held, subject to `x >= 0` if it is bounded.
+pub(super) struct Problem<'p> {
+    pub(super) grid: &'p Grid,
+    pub(super) matrix: Matrix<f64>,
+    pub(super) b: &'p Field<f64>,
+    pub(super) is_bounded: bool,
+    pub(super) weight: Weight,
+    /// The largest weighted residual that is as good as none.
+    pub(super) tolerance: f64,
+}
+
+/// What makes of a residual a fraction of the tolerance.
+pub(super) struct Weight {
+    /// Inside the patches of each group, whose triangles are alike.
+    pub(super) inside: Vec<Lanes<f64>>,
+    pub(super) interface: Vec<f64>,
+}
+
+/// An iterate.
+#[derive(Clone)]
+pub(super) struct Iterate {
+    pub(super) x: Field<f64>,
+    /// Where it is pressed against its bound; without entries if there is none.
+    pub(super) frozen: Frozen,
+}
+
+/// Whether a value is frozen.
+#[derive(Clone)]
+pub(super) struct Frozen {
+    pub(super) patches: Vec<[bool; LANES]>,
+    pub(super) interface: Vec<bool>,
+}
+
+/// The level below a finest one.
+pub(super) struct Below<'l> {
+    pub(super) grid: &'l Grid,
+    /// The correction; and after the sweeps the functional for the next one.
+    pub(super) x: &'l mut Field<f32>,
+    pub(super) b: &'l mut Field<f32>,
+    /// The correction is in this unit.
+    pub(super) x_unit: f64,
+    /// And the functional in this one.
+    pub(super) b_unit: f64,
+}
+
+impl Frozen {
+    pub(super) fn nothing(grid: &Grid, is_bounded: bool) -> Self {
+        let entries = |count: usize| if is_bounded { count } else { 0 };
+        Self {
+            patches: vec![[false; LANES]; entries(grid.groups() * grid.lattice.points())],
+            interface: vec![false; entries(grid.interface())],
+        }
+    }
+
+    /// The groups that differ from another state; the rims of their patches follow the interface.
+    pub(super) fn changed_groups(&mut self, grid: &Grid, before: &Self) -> Vec<usize> {
+        let points = grid.lattice.points();
+        let changes = |g: &usize| {
+            let of_group = g * points..(g + 1) * points;
+            for (at, places) in grid.rim(*g) {
+                self.patches[of_group.start + at] = places.map(|a| self.interface[a as usize]);
+            }
+            self.patches[of_group.clone()] != before.patches[of_group]
+        };
+        (0..grid.groups()).filter(changes).collect()
+    }
+}
+
+impl Problem<'_> {
+    /// The correction of `old` where it is not frozen, sweeps, the residual and its restriction. `inflow` is over the interface.
+    pub(super) fn correct_and_relax(
+        &self,
+        old: &Iterate,
+        is_corrected: bool,
+        new: &mut Iterate,
+        below: &mut Below,
+        inflow: &mut [f64],
+    ) -> Found {
+        if self.is_bounded {
+            self.pass::<true>(old, is_corrected, new, below, inflow)
+        } else {
+            self.pass::<false>(old, is_corrected, new, below, inflow)
+        }
+    }
+
+    fn pass<const BOUNDED: bool>(
+        &self,
+        old: &Iterate,
+        is_corrected: bool,
+        new: &mut Iterate,
+        below: &mut Below,
+        inflow: &mut [f64],
+    ) -> Found {
+        let Self { grid, matrix, b, .. } = self;
+        let mut cut = 0;
+        new.x.interface.copy_from_slice(&old.x.interface);
+        if is_corrected {
+            cut += self.correct_interface::<BOUNDED>(old, &mut new.x, below);
+        }
+        matrix.smooth::<BOUNDED>(grid, &mut new.x, b, inflow, |g, x| {
+            if is_corrected {
+                cut += self.correct_group::<BOUNDED>(g, old, x, below);
+            } else {
+                x.group_mut(grid, g).copy_from_slice(old.x.group(grid, g));
+            }
+        });
+        let mut found = self.settle::<BOUNDED>(new, below, inflow);
+        found.cut = cut;
+        found
+    }
+
+    fn correct_interface<const BOUNDED: bool>(
+        &self,
+        old: &Iterate,
+        x: &mut Field<f64>,
+        below: &Below,
+    ) -> usize {
+        let mut cut = 0;
+        prolong_interface([below.grid, self.grid], &below.x.interface, |a, correction| {
+            if self.grid.is_held[a] || (BOUNDED && old.frozen.interface[a]) {
+                return;
+            }
+            let corrected = old.x.interface[a] + below.x_unit * f64::from(correction);
+            let is_cut = BOUNDED && corrected < 0.0;
+            cut += usize::from(is_cut);
+            x.interface[a] = if is_cut { 0.0 } else { corrected };
+        });
+        cut
+    }
+
+    #[inline(always)]
+    fn correct_group<const BOUNDED: bool>(
+        &self,
+        g: usize,
+        old: &Iterate,
+        x: &mut Field<f64>,
+        below: &mut Below,
+    ) -> usize {
+        let points = self.grid.lattice.points();
+        let before = old.x.group(self.grid, g);
+        let frozen = if BOUNDED { &old.frozen.patches[g * points..][..points] } else { &[] };
+        below.grid.gather(g, below.x);
+        let x = x.group_mut(self.grid, g);
+        let mut cut = [0u32; LANES];
+        prolong_inside([below.grid, self.grid], g, below.x, |at, correction| {
+            let corrected = before[at] + correction.scaled(below.x_unit);
+            if BOUNDED {
+                for lane in 0..LANES {
+                    let is_free = !frozen[at][lane];
+                    cut[lane] += u32::from(is_free && corrected.0[lane] < 0.0);
+                    let bounded = if corrected.0[lane] > 0.0 { corrected.0[lane] } else { 0.0 };
+                    x[at].0[lane] = if is_free { bounded } else { before[at].0[lane] };
+                }
+            } else {
+                x[at] = corrected;
+            }
+        });
+        cut.iter().sum::<u32>() as usize
+    }
+
+    /// Residual, energy, contact and restriction.
+    fn settle<const BOUNDED: bool>(&self, new: &mut Iterate, below: &mut Below, inflow: &mut [f64]) -> Found {
+        let Self { grid, matrix, b, .. } = self;
+        let points = grid.lattice.points();
+        let mut found = Found::default();
+        let mut r = vec![Lanes::default(); points];
+        below.b.interface.fill(0.0);
+        inflow.fill(0.0);
+        let factor = 1.0 / below.b_unit;
+        for g in 0..grid.groups() {
+            grid.gather(g, &mut new.x);
+            let frozen = if BOUNDED { &mut new.frozen.patches[g * points..][..points] } else { &mut [] };
+            self.settle_group::<BOUNDED>(g, &new.x, frozen, &mut r, &mut found);
+            restrict_inside([below.grid, grid], g, &r, factor, below.b);
+            matrix.contribute(grid, g, &new.x, inflow);
+        }
+        let mut residual = vec![0.0; grid.interface()];
+        matrix.residuals_interface(grid, &new.x, b, inflow, |a, r| {
+            let x = new.x.interface[a];
+            found.energy -= 0.5 * x * (r + b.interface[a]);
+            if grid.is_held[a] {
+                return;
+            }
+            let is_free = !BOUNDED || x > 0.0;
+            let rounding = ROUNDING * matrix.diagonal[a] * x.abs();
+            let defect = if is_free { r.abs() - rounding } else { r };
+            found.violation = larger(found.violation, defect * self.weight.interface[a]);
+            let is_pressed = !is_free && r * self.weight.interface[a] < -self.tolerance;
+            if BOUNDED {
+                new.frozen.interface[a] = is_pressed;
+            }
+            residual[a] = if is_pressed { 0.0 } else { r };
+        });
+        restrict_interface([below.grid, grid], &residual, factor, below.b);
+        found
+    }
+
+    /// The residuals inside the patches of a group, zero where it is frozen.
+    #[inline(always)]
+    fn settle_group<const BOUNDED: bool>(
+        &self,
+        g: usize,
+        x: &Field<f64>,
+        frozen: &mut [[bool; LANES]],
+        r: &mut [Lanes<f64>],
+        found: &mut Found,
+    ) {
+        let Self { grid, matrix, b, .. } = self;
+        let weight = self.weight.inside[g].0;
+        let rounding = matrix.uniform[g].diagonal.0.map(|diagonal| ROUNDING * diagonal);
+        let (values, loads) = (x.group(grid, g), b.group(grid, g));
+        let (mut worst, mut energy) = ([0.0; LANES], [0.0; LANES]);
+        matrix.residuals_inside(grid, g, x, b, |at, residual| {
+            let (x, b) = (values[at].0, loads[at].0);
+            for lane in 0..LANES {
+                let residual = residual.0[lane];
+                energy[lane] += x[lane] * (residual + b[lane]);
+                let is_free = !BOUNDED || x[lane] > 0.0;
+                let size = residual.abs() - rounding[lane] * x[lane].abs();
+                let defect = if is_free { size } else { residual } * weight[lane];
+                worst[lane] = larger(worst[lane], defect);
+                let is_pressed = !is_free && residual * weight[lane] < -self.tolerance;
+                r[at].0[lane] = if is_pressed { 0.0 } else { residual };
+                if BOUNDED {
+                    frozen[at][lane] = is_pressed;
+                }
+            }
+        });
+        found.violation = worst.into_iter().fold(found.violation, larger);
+        found.energy -= 0.5 * energy.iter().sum::<f64>();
+    }
+
+    /// `b - A x` at the points that are not held, zero at the others.
+    pub(super) fn residual(&self, x: &Field<f64>, b: &Field<f64>) -> Field<f64> {
+        let Self { grid, matrix, .. } = self;
+        let mut x = x.clone();
+        let mut residual = Field::zero(grid);
+        let mut inflow = vec![0.0; grid.interface()];
+        for g in 0..grid.groups() {
+            grid.gather(g, &mut x);
+            let r = residual.group_mut(grid, g);
+            matrix.residuals_inside(grid, g, &x, b, |at, value| r[at] = value);
+            matrix.contribute(grid, g, &x, &mut inflow);
+        }
+        matrix.residuals_interface(grid, &x, b, &inflow, |a, value| {
+            residual.interface[a] = if grid.is_held[a] { 0.0 } else { value };
+        });
+        residual
+    }
+
+    /// By how much the energy is larger after a step than before it: the step times the mean of the residuals.
+    pub(super) fn energy_change(&self, before: &Field<f64>, after: &Field<f64>) -> f64 {
+        let residuals = [before, after].map(|x| self.residual(x, self.b));
+        let step = after.zip_with(before, |after, before| after - before);
+        -0.5 * residuals.iter().map(|residual| step.dot(self.grid, residual)).sum::<f64>()
+    }
+
+    /// Adds the part of the correction, cut off at the bound, that lowers the energy most: `t d`, `0 <= t <= 1`.
+    pub(super) fn line_search(&self, iterate: &mut Iterate, below: &mut Below) {
+        let grid = self.grid;
+        let mut corrected = iterate.x.clone();
+        self.correct_interface::<true>(iterate, &mut corrected, below);
+        for g in 0..grid.groups() {
+            self.correct_group::<true>(g, iterate, &mut corrected, below);
+        }
+        let d = corrected.zip_with(&iterate.x, |corrected, x| corrected - x);
+        let slope = self.residual(&iterate.x, self.b).dot(grid, &d);
+        let curvature = -self.residual(&d, &Field::zero(grid)).dot(grid, &d);
+        let step = if curvature > 0.0 { (slope / curvature).clamp(0.0, 1.0) } else { 0.0 };
+        iterate.x = iterate.x.zip_with(&d, |x, d| larger(x + step * d, 0.0));
+    }
+}
