@@ -61,6 +61,8 @@ pub(crate) struct Patches {
     galerkin: Vec<Galerkin>,
     /// The vertices of the mesh on the finest grid.
     vertices: Numbers,
+    /// And at its interface.
+    at_interface: Vec<u32>,
     stored: Hierarchy,
     /// The rows of the finest stored level on the coarsest grid.
     rows: Numbers,
@@ -105,6 +107,7 @@ impl Patches {
         );
         let patches = Self {
             galerkin: grids[1..].iter().map(|grid| Galerkin::new(&grid.lattice)).collect(),
+            at_interface: numbers_of_interface(&grids[grids.len() - 1], &numbers),
             grids,
             stencils,
             vertices: numbers,
@@ -244,18 +247,8 @@ fn has_stencil(
 /// zero there would not be so on the finer grid.
 fn hold(grids: &mut [Grid], vertices: &Numbers, free: &[bool]) -> Option<()> {
     let (finest, coarser) = grids.split_last_mut()?;
-    let points = finest.lattice.points();
-    let mut is_held = finest.is_held.clone();
-    for g in 0..finest.groups() {
-        for (at, places) in finest.rim(g) {
-            for (&number, &place) in vertices.0[g * points + at].iter().zip(places) {
-                if Numbers::is_one(number) {
-                    is_held[place as usize] = !free[number as usize];
-                }
-            }
-        }
-    }
-    finest.is_held = is_held;
+    let is_held = |&a: &u32| !Numbers::is_one(a) || !free[a as usize];
+    finest.is_held = numbers_of_interface(finest, vertices).iter().map(is_held).collect();
     let mut finer: &Grid = finest;
     for grid in coarser.iter_mut().rev() {
         if !finer.is_held_between_held() {
@@ -305,7 +298,7 @@ impl Patches {
     fn is_matrix(&self, k: &StiffnessMatrix, free: &[bool]) -> bool {
         let grid = &self.grids[self.finest()];
         let matrix = matrix::Matrix::<f64>::new(grid, &self.stencils, 1.0);
-        let number = self.numbers_of_interface(grid);
+        let number = &self.at_interface;
         let (m, partition) = (grid.segments(), &grid.partition);
         let entry = |a: u32, b: u32| {
             row_of(k, a as usize).find(|&(column, _)| column == b as usize).map_or(0.0, |(_, entry)| entry)
@@ -332,20 +325,19 @@ impl Patches {
                 })
             })
     }
+}
 
-    /// The vertices of the mesh at the interface.
-    fn numbers_of_interface(&self, grid: &Grid) -> Vec<u32> {
-        let mut number = vec![u32::MAX; grid.interface()];
-        let points = grid.lattice.points();
-        for g in 0..grid.groups() {
-            for (at, places) in grid.rim(g) {
-                for (&vertex, &place) in self.vertices.0[g * points + at].iter().zip(places) {
-                    if Numbers::is_one(vertex) {
-                        number[place as usize] = vertex;
-                    }
+/// The vertices at the interface of a grid.
+fn numbers_of_interface(grid: &Grid, vertices: &Numbers) -> Vec<u32> {
+    let mut number = vec![u32::MAX; grid.interface()];
+    for (g, numbers) in vertices.0.chunks(grid.lattice.points()).enumerate() {
+        for (at, places) in grid.rim(g) {
+            for (&vertex, &place) in numbers[at].iter().zip(places) {
+                if Numbers::is_one(vertex) {
+                    number[place as usize] = vertex;
                 }
             }
         }
-        number
     }
+    number
 }

@@ -1,8 +1,10 @@
 //! Functions and functionals on a level of the patches.
 
 use super::grid::Grid;
-use super::lanes::{Lanes, Real};
+use super::lanes::{LANES, Lanes, Real};
 use super::numbers::Numbers;
+use crate::parallel::BLOCK;
+use crate::parallel::prelude::*;
 
 /// Values at the points of a level. Those of a functional on the sides of the patches count at the interface only.
 #[derive(Debug, Clone)]
@@ -27,17 +29,19 @@ impl<T: Real> Field<T> {
     }
 
     /// The values by the numbers of the points.
-    pub(super) fn of(grid: &Grid, numbers: &Numbers, value: impl Fn(usize) -> f64) -> Self {
+    pub(super) fn of(grid: &Grid, numbers: &Numbers, value: impl Fn(usize) -> f64 + Sync) -> Self {
         let mut field = Self::zero(grid);
-        for (lanes, number) in field.patches.iter_mut().zip(&numbers.0) {
-            for (lane, &number) in lanes.0.iter_mut().zip(number) {
-                if Numbers::is_one(number) {
-                    *lane = T::of(value(number as usize));
-                }
+        let of_point = |&number: &u32| {
+            if Numbers::is_one(number) { T::of(value(number as usize)) } else { T::default() }
+        };
+        let points = field.patches.par_iter_mut().zip(numbers.0.par_iter());
+        points.with_min_len(BLOCK.div_ceil(LANES)).for_each(|(lanes, numbers)| {
+            for (lane, number) in lanes.0.iter_mut().zip(numbers) {
+                *lane = of_point(number);
             }
-        }
-        for g in 0..grid.groups() {
-            grid.copy_rim_to_interface(g, &mut field);
+        });
+        for (g, patches) in field.patches.chunks(grid.lattice.points()).enumerate() {
+            grid.give_rim(g, patches, &mut field.interface);
         }
         field
     }
@@ -103,5 +107,28 @@ impl Field<f64> {
             patches: self.patches.iter().zip(&other.patches).map(lanes).collect(),
             interface: self.interface.iter().zip(&other.interface).map(|(x, y)| combine(*x, *y)).collect(),
         }
+    }
+}
+
+/// What the patches have for the points on their sides.
+#[derive(Debug)]
+pub(super) struct Inflow<T> {
+    /// Group by group.
+    pub(super) sides: Vec<Lanes<T>>,
+    /// Summed up over the patches that meet.
+    pub(super) interface: Vec<T>,
+}
+
+impl<T: Real> Inflow<T> {
+    pub(super) fn new(grid: &Grid) -> Self {
+        Self {
+            sides: vec![Lanes::default(); grid.groups() * grid.on_sides()],
+            interface: vec![T::default(); grid.interface()],
+        }
+    }
+
+    pub(super) fn sum_up(&mut self, grid: &Grid) {
+        self.interface.fill(T::default());
+        grid.add_sides(&self.sides, &mut self.interface);
     }
 }

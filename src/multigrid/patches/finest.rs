@@ -1,11 +1,12 @@
 //! A cycle's work on its finest level: correction, projected Gauss-Seidel, residual, restriction.
 
-use super::field::Field;
+use super::field::{Field, Inflow};
 use super::grid::Grid;
 use super::lanes::{LANES, Lanes};
 use super::matrix::Matrix;
 use super::transfer::{prolong_inside, prolong_interface, restrict_inside, restrict_interface};
 use crate::multigrid::sweep::{Found, ROUNDING, larger};
+use crate::parallel::prelude::*;
 
 /// The problem on a level: minimise `1/2 x'A x - b'x` where `x` is not held, subject to `x >= 0` if it is bounded.
 pub(super) struct Problem<'p> {
@@ -29,7 +30,7 @@ pub(super) struct Weight {
 #[derive(Clone)]
 pub(super) struct Iterate {
     pub(super) x: Field<f64>,
-    /// Where it is pressed against its bound; without entries if there is none.
+    /// Where it is pressed against its bound.
     pub(super) frozen: Frozen,
 }
 
@@ -46,6 +47,7 @@ pub(super) struct Below<'l> {
     /// The correction; and after the sweeps the functional for the next one.
     pub(super) x: &'l mut Field<f32>,
     pub(super) b: &'l mut Field<f32>,
+    pub(super) inflow: &'l mut Inflow<f32>,
     /// The correction is in this unit.
     pub(super) x_unit: f64,
     /// And the functional in this one.
@@ -53,11 +55,10 @@ pub(super) struct Below<'l> {
 }
 
 impl Frozen {
-    pub(super) fn nothing(grid: &Grid, is_bounded: bool) -> Self {
-        let entries = |count: usize| if is_bounded { count } else { 0 };
+    pub(super) fn nothing(grid: &Grid) -> Self {
         Self {
-            patches: vec![[false; LANES]; entries(grid.groups() * grid.lattice.points())],
-            interface: vec![false; entries(grid.interface())],
+            patches: vec![[false; LANES]; grid.groups() * grid.lattice.points()],
+            interface: vec![false; grid.interface()],
         }
     }
 
@@ -76,14 +77,14 @@ impl Frozen {
 }
 
 impl Problem<'_> {
-    /// The correction of `old` where it is not frozen, sweeps, the residual and its restriction. `inflow` is over the interface.
+    /// The correction of `old` where it is not frozen, sweeps, the residual and its restriction.
     pub(super) fn correct_and_relax(
         &self,
         old: &Iterate,
         is_corrected: bool,
         new: &mut Iterate,
         below: &mut Below,
-        inflow: &mut [f64],
+        inflow: &mut Inflow<f64>,
     ) -> Found {
         if self.is_bounded {
             self.pass::<true>(old, is_corrected, new, below, inflow)
@@ -98,20 +99,21 @@ impl Problem<'_> {
         is_corrected: bool,
         new: &mut Iterate,
         below: &mut Below,
-        inflow: &mut [f64],
+        inflow: &mut Inflow<f64>,
     ) -> Found {
         let Self { grid, matrix, b, .. } = self;
         let mut cut = 0;
         new.x.interface.copy_from_slice(&old.x.interface);
         if is_corrected {
             cut += self.correct_interface::<BOUNDED>(old, &mut new.x, below);
+            below.grid.gather_all(below.x);
         }
-        matrix.smooth::<BOUNDED>(grid, &mut new.x, b, inflow, |g, x| {
+        cut += matrix.smooth::<BOUNDED>(grid, &mut new.x, b, inflow, |g, x| {
             if is_corrected {
-                cut += self.correct_group::<BOUNDED>(g, old, x, below);
-            } else {
-                x.group_mut(grid, g).copy_from_slice(old.x.group(grid, g));
+                return self.correct_group::<BOUNDED>(g, old, x, below);
             }
+            x.copy_from_slice(old.x.group(grid, g));
+            0
         });
         let mut found = self.settle::<BOUNDED>(new, below, inflow);
         found.cut = cut;
@@ -142,16 +144,15 @@ impl Problem<'_> {
         &self,
         g: usize,
         old: &Iterate,
-        x: &mut Field<f64>,
-        below: &mut Below,
+        x: &mut [Lanes<f64>],
+        below: &Below,
     ) -> usize {
         let points = self.grid.lattice.points();
         let before = old.x.group(self.grid, g);
-        let frozen = if BOUNDED { &old.frozen.patches[g * points..][..points] } else { &[] };
-        below.grid.gather(g, below.x);
-        let x = x.group_mut(self.grid, g);
+        let frozen = &old.frozen.patches[g * points..][..points];
+        let correction = below.x.group(below.grid, g);
         let mut cut = [0u32; LANES];
-        prolong_inside([below.grid, self.grid], g, below.x, |at, correction| {
+        prolong_inside([below.grid, self.grid], correction, |at, correction| {
             let corrected = before[at] + correction.scaled(below.x_unit);
             if BOUNDED {
                 for lane in 0..LANES {
@@ -168,23 +169,41 @@ impl Problem<'_> {
     }
 
     /// Residual, energy, contact and restriction.
-    fn settle<const BOUNDED: bool>(&self, new: &mut Iterate, below: &mut Below, inflow: &mut [f64]) -> Found {
+    fn settle<const BOUNDED: bool>(
+        &self,
+        new: &mut Iterate,
+        below: &mut Below,
+        inflow: &mut Inflow<f64>,
+    ) -> Found {
         let Self { grid, matrix, b, .. } = self;
-        let points = grid.lattice.points();
-        let mut found = Found::default();
-        let mut r = vec![Lanes::default(); points];
-        below.b.interface.fill(0.0);
-        inflow.fill(0.0);
+        let coarse = below.grid;
+        let [points, coarse_points] = [grid, coarse].map(|grid| grid.lattice.points());
         let factor = 1.0 / below.b_unit;
-        for g in 0..grid.groups() {
-            grid.gather(g, &mut new.x);
-            let frozen = if BOUNDED { &mut new.frozen.patches[g * points..][..points] } else { &mut [] };
-            self.settle_group::<BOUNDED>(g, &new.x, frozen, &mut r, &mut found);
-            restrict_inside([below.grid, grid], g, &r, factor, below.b);
-            matrix.contribute(grid, g, &new.x, inflow);
-        }
+        let (patches, interface) = (&mut new.x.patches, &new.x.interface);
+        let groups = patches.par_chunks_mut(points).zip(new.frozen.patches.par_chunks_mut(points));
+        let groups = groups.zip(inflow.sides.par_chunks_mut(grid.on_sides()));
+        let coarse_sides = below.inflow.sides.par_chunks_mut(coarse.on_sides());
+        let groups = groups.zip(below.b.patches.par_chunks_mut(coarse_points).zip(coarse_sides)).enumerate();
+        let of_group = |r: &mut Vec<Lanes<f64>>, (g, (((x, frozen), sides), (inside, on_sides)))| {
+            let x: &mut [Lanes<f64>] = x;
+            grid.gather(g, interface, x);
+            let found = self.settle_group::<BOUNDED>(g, x, frozen, r);
+            restrict_inside([coarse, grid], r, factor, inside, on_sides);
+            matrix.contribute(grid, g, x, sides);
+            found
+        };
+        let residuals = || vec![Lanes::default(); points];
+        let of_groups: Vec<Found> = groups.with_min_len(grid.task()).map_init(residuals, of_group).collect();
+        let mut found = of_groups.into_iter().fold(Found::default(), |all, group| Found {
+            violation: larger(all.violation, group.violation),
+            energy: all.energy + group.energy,
+            cut: 0,
+        });
+        inflow.sum_up(grid);
+        below.b.interface.fill(0.0);
+        coarse.add_sides(&below.inflow.sides, &mut below.b.interface);
         let mut residual = vec![0.0; grid.interface()];
-        matrix.residuals_interface(grid, &new.x, b, inflow, |a, r| {
+        matrix.residuals_interface(grid, &new.x, b, &inflow.interface, |a, r| {
             let x = new.x.interface[a];
             found.energy -= 0.5 * x * (r + b.interface[a]);
             if grid.is_held[a] {
@@ -209,17 +228,16 @@ impl Problem<'_> {
     fn settle_group<const BOUNDED: bool>(
         &self,
         g: usize,
-        x: &Field<f64>,
+        values: &[Lanes<f64>],
         frozen: &mut [[bool; LANES]],
         r: &mut [Lanes<f64>],
-        found: &mut Found,
-    ) {
+    ) -> Found {
         let Self { grid, matrix, b, .. } = self;
         let weight = self.weight.inside[g].0;
         let rounding = matrix.uniform[g].diagonal.0.map(|diagonal| ROUNDING * diagonal);
-        let (values, loads) = (x.group(grid, g), b.group(grid, g));
+        let loads = b.group(grid, g);
         let (mut worst, mut energy) = ([0.0; LANES], [0.0; LANES]);
-        matrix.residuals_inside(grid, g, x, b, |at, residual| {
+        matrix.residuals_inside(grid, g, values, loads, |at, residual| {
             let (x, b) = (values[at].0, loads[at].0);
             for lane in 0..LANES {
                 let residual = residual.0[lane];
@@ -235,23 +253,27 @@ impl Problem<'_> {
                 }
             }
         });
-        found.violation = worst.into_iter().fold(found.violation, larger);
-        found.energy -= 0.5 * energy.iter().sum::<f64>();
+        Found {
+            violation: worst.into_iter().fold(0.0, larger),
+            energy: -0.5 * energy.iter().sum::<f64>(),
+            cut: 0,
+        }
     }
 
     /// `b - A x` at the points that are not held, zero at the others.
     pub(super) fn residual(&self, x: &Field<f64>, b: &Field<f64>) -> Field<f64> {
         let Self { grid, matrix, .. } = self;
         let mut x = x.clone();
+        grid.gather_all(&mut x);
         let mut residual = Field::zero(grid);
-        let mut inflow = vec![0.0; grid.interface()];
-        for g in 0..grid.groups() {
-            grid.gather(g, &mut x);
-            let r = residual.group_mut(grid, g);
-            matrix.residuals_inside(grid, g, &x, b, |at, value| r[at] = value);
-            matrix.contribute(grid, g, &x, &mut inflow);
+        let mut inflow = Inflow::new(grid);
+        for (g, sides) in inflow.sides.chunks_mut(grid.on_sides()).enumerate() {
+            let (x, r) = (x.group(grid, g), residual.group_mut(grid, g));
+            matrix.residuals_inside(grid, g, x, b.group(grid, g), |at, value| r[at] = value);
+            matrix.contribute(grid, g, x, sides);
         }
-        matrix.residuals_interface(grid, &x, b, &inflow, |a, value| {
+        inflow.sum_up(grid);
+        matrix.residuals_interface(grid, &x, b, &inflow.interface, |a, value| {
             residual.interface[a] = if grid.is_held[a] { 0.0 } else { value };
         });
         residual
@@ -269,8 +291,9 @@ impl Problem<'_> {
         let grid = self.grid;
         let mut corrected = iterate.x.clone();
         self.correct_interface::<true>(iterate, &mut corrected, below);
+        below.grid.gather_all(below.x);
         for g in 0..grid.groups() {
-            self.correct_group::<true>(g, iterate, &mut corrected, below);
+            self.correct_group::<true>(g, iterate, corrected.group_mut(grid, g), below);
         }
         let d = corrected.zip_with(&iterate.x, |corrected, x| corrected - x);
         let slope = self.residual(&iterate.x, self.b).dot(grid, &d);

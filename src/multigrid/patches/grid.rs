@@ -6,6 +6,7 @@ use super::field::Field;
 use super::lanes::{LANES, Lanes, Real};
 use super::lattice::Lattice;
 use super::partition::Partition;
+use crate::parallel::BLOCK;
 
 /// A level: all patches refined into lattices of so many segments.
 #[derive(Debug)]
@@ -73,20 +74,45 @@ impl Grid {
 
     /// Gives the values at the interface to the patches of a group.
     #[inline(always)]
-    pub(super) fn gather<T: Real>(&self, g: usize, x: &mut Field<T>) {
-        let points = self.lattice.points();
-        let patches = &mut x.patches[g * points..][..points];
+    pub(super) fn gather<T: Real>(&self, g: usize, interface: &[T], patches: &mut [Lanes<T>]) {
         for (at, places) in self.rim(g) {
-            patches[at] = Lanes(places.map(|a| x.interface[a as usize]));
+            patches[at] = Lanes(places.map(|a| interface[a as usize]));
         }
     }
 
+    /// Gives the values at the interface to all patches.
+    pub(super) fn gather_all<T: Real>(&self, x: &mut Field<T>) {
+        for (g, patches) in x.patches.chunks_mut(self.lattice.points()).enumerate() {
+            self.gather(g, &x.interface, patches);
+        }
+    }
+
+    /// The number of points on the sides of a patch.
+    pub(super) fn on_sides(&self) -> usize {
+        self.lattice.rim.len()
+    }
+
+    /// Adds what patches have for the points on their sides, group by group.
+    pub(super) fn add_sides<T: Real>(&self, sides: &[Lanes<T>], interface: &mut [T]) {
+        for (g, sides) in sides.chunks(self.on_sides()).enumerate() {
+            for (places, lanes) in self.places(g).1.iter().zip(sides) {
+                for (&a, lane) in places.iter().zip(lanes.0) {
+                    interface[a as usize] += lane;
+                }
+            }
+        }
+    }
+
+    /// So many groups are worth a task of their own.
+    pub(super) fn task(&self) -> usize {
+        BLOCK.div_ceil(LANES * self.lattice.points())
+    }
+
     /// Gives the values on the rim of the patches of a group to the interface.
-    pub(super) fn copy_rim_to_interface<T: Real>(&self, g: usize, x: &mut Field<T>) {
-        let points = self.lattice.points();
+    pub(super) fn give_rim<T: Real>(&self, g: usize, patches: &[Lanes<T>], interface: &mut [T]) {
         for (at, places) in self.rim(g) {
-            for (&a, value) in places.iter().zip(x.patches[g * points + at].0) {
-                x.interface[a as usize] = value;
+            for (&a, value) in places.iter().zip(patches[at].0) {
+                interface[a as usize] = value;
             }
         }
     }

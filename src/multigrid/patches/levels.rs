@@ -1,13 +1,14 @@
 //! The levels below a finest one: lattices in single precision, and below them stored rows.
 
 use super::Patches;
-use super::field::Field;
+use super::field::{Field, Inflow};
 use super::finest::{Below, Frozen};
 use super::lanes::{LANES, Lanes};
 use super::matrix::{Entries, Matrix, Truncated};
 use super::transfer::{prolong_inside, prolong_interface, restrict_inside, restrict_interface};
 use crate::multigrid::cholesky::NotFactored;
 use crate::multigrid::correction::{CoarseLevels, twice_up_to, visits};
+use crate::parallel::prelude::*;
 
 /// The levels below a finest one, with their vectors.
 ///
@@ -24,14 +25,15 @@ pub(super) struct Coarser<'p> {
     units: [f64; 2],
 }
 
+/// The rows of a group on each lattice, and its entries below.
+type TruncatedEntries = (Vec<Option<Box<Truncated<f32>>>>, Option<Entries<f64>>);
+
 struct Level {
     /// `None` where rows are stored.
     matrix: Option<Matrix<f32>>,
     x: Field<f32>,
     b: Field<f32>,
-    inflow: Vec<f32>,
-    /// The residuals of a group.
-    residual: Vec<Lanes<f32>>,
+    inflow: Inflow<f32>,
 }
 
 impl<'p> Coarser<'p> {
@@ -43,8 +45,7 @@ impl<'p> Coarser<'p> {
             matrix: (l > 0).then(|| Matrix::new(grid, &patches.stencils, 1.0 / largest)),
             x: Field::zero(grid),
             b: Field::zero(grid),
-            inflow: vec![0.0; grid.interface()],
-            residual: vec![Lanes::default(); grid.lattice.points()],
+            inflow: Inflow::new(grid),
         });
         Ok(Self {
             patches,
@@ -68,9 +69,9 @@ impl<'p> Coarser<'p> {
 
     /// The level below `finest`, with its correction, and for its functional.
     pub(super) fn below(&mut self, finest: usize) -> Below<'_> {
-        let Level { x, b, .. } = &mut self.levels[finest - 1];
+        let Level { x, b, inflow, .. } = &mut self.levels[finest - 1];
         let [b_unit, x_unit] = self.units;
-        Below { grid: &self.patches.grids[finest - 1], x, b, x_unit, b_unit }
+        Below { grid: &self.patches.grids[finest - 1], x, b, inflow, x_unit, b_unit }
     }
 
     /// Cuts off the hat functions below the level `finest` where it is frozen, in the groups that have changed.
@@ -80,38 +81,45 @@ impl<'p> Coarser<'p> {
         frozen: &Frozen,
         changed: &[usize],
     ) -> Result<(), NotFactored> {
-        let Patches { grids, stencils, galerkin, .. } = self.patches;
-        let scale = self.scale();
-        let points = grids[finest].lattice.points();
-        for &g in changed {
-            let frozen = &frozen.patches[g * points..][..points];
-            let is_whole = frozen.iter().all(|lanes| lanes == &[false; LANES]);
-            let mut entries = Entries::without(&stencils[g], &grids[finest].lattice, |at| frozen[at]);
-            for l in (0..finest).rev() {
-                if is_whole {
-                    if let Some(matrix) = &mut self.levels[l].matrix {
-                        matrix.truncated[g] = None;
-                    }
-                    continue;
-                }
-                entries = galerkin[l].apply(&entries);
-                entries.clean(&stencils[g]);
-                if let Some(matrix) = &mut self.levels[l].matrix {
-                    matrix.truncated[g] = Some(Box::new(Truncated::new(&entries, scale)));
-                }
-            }
-            self.truncated[g] = (!is_whole).then_some(entries);
-        }
         if changed.is_empty() {
             return Ok(());
         }
-        for (level, grid) in self.levels[..finest].iter_mut().zip(grids) {
+        let points = self.patches.grids[finest].lattice.points();
+        let entries = |&g: &usize| self.truncated_entries(finest, g, &frozen.patches[g * points..][..points]);
+        let of_groups: Vec<_> = changed.par_iter().map(entries).collect();
+        for (&g, (rows, entries)) in changed.iter().zip(of_groups) {
+            for (level, rows) in self.levels[1..finest].iter_mut().zip(rows) {
+                level.matrix.as_mut().expect("a lattice has a matrix").truncated[g] = rows;
+            }
+            self.truncated[g] = entries;
+        }
+        for (level, grid) in self.levels[..finest].iter_mut().zip(&self.patches.grids) {
             if let Some(matrix) = &mut level.matrix {
                 matrix.assemble_interface(grid);
             }
         }
         let (diagonal, off_diagonal) = self.patches.stored_entries(&self.truncated);
         self.stored.replace(&diagonal, &off_diagonal)
+    }
+
+    /// The rows of a group on the lattices below `finest`, from the coarsest, and the entries on the level of the stored rows; nothing where
+    /// nothing is frozen.
+    fn truncated_entries(&self, finest: usize, g: usize, frozen: &[[bool; LANES]]) -> TruncatedEntries {
+        let Patches { grids, stencils, galerkin, .. } = self.patches;
+        if frozen.iter().all(|lanes| lanes == &[false; LANES]) {
+            return ((1..finest).map(|_| None).collect(), None);
+        }
+        let mut entries = Entries::without(&stencils[g], &grids[finest].lattice, |at| frozen[at]);
+        let mut rows = Vec::new();
+        for l in (0..finest).rev() {
+            entries = galerkin[l].apply(&entries);
+            entries.clean(&stencils[g]);
+            if l > 0 {
+                rows.push(Some(Box::new(Truncated::new(&entries, self.scale()))));
+            }
+        }
+        rows.reverse();
+        (rows, Some(entries))
     }
 
     /// The factor of the matrices.
@@ -184,36 +192,44 @@ impl<'p> Coarser<'p> {
         let [coarse, grid] = [&self.patches.grids[l - 1], &self.patches.grids[l]];
         let (below, above) = self.levels.split_at_mut(l);
         let (below, level) = (&mut below[l - 1], &mut above[0]);
-        let Level { matrix, x, b, inflow, residual } = level;
+        let Level { matrix, x, b, inflow } = level;
         let matrix = matrix.as_ref().expect("a lattice has a matrix");
-        let points = grid.lattice.points();
+        if correct {
+            coarse.gather_all(&mut below.x);
+        }
         matrix.smooth::<false>(grid, x, b, inflow, |g, x| {
-            if correct {
-                coarse.gather(g, &mut below.x);
-                let x = &mut x.patches[g * points..][..points];
-                match matrix.truncated[g].as_deref() {
-                    None => prolong_inside([coarse, grid], g, &below.x, |at, c| x[at] = x[at] + c),
-                    Some(rows) => {
-                        prolong_inside([coarse, grid], g, &below.x, |at, c| {
-                            x[at] = rows.corrected(at, x[at], c)
-                        });
-                    }
+            let correction = below.x.group(coarse, g);
+            match matrix.truncated[g].as_deref() {
+                _ if !correct => {}
+                None => prolong_inside([coarse, grid], correction, |at, c| x[at] = x[at] + c),
+                Some(rows) => {
+                    prolong_inside([coarse, grid], correction, |at, c| x[at] = rows.corrected(at, x[at], c));
                 }
             }
+            0
         });
         if !restrict {
             return;
         }
+        let [points, coarse_points] = [grid, coarse].map(|grid| grid.lattice.points());
+        let groups = x.patches.par_chunks_mut(points).zip(inflow.sides.par_chunks_mut(grid.on_sides()));
+        let coarse_sides = below.inflow.sides.par_chunks_mut(coarse.on_sides());
+        let groups = groups.zip(below.b.patches.par_chunks_mut(coarse_points).zip(coarse_sides)).enumerate();
+        let interface = &x.interface;
+        let of_group = |r: &mut Vec<Lanes<f32>>, (g, ((x, sides), (inside, on_sides)))| {
+            let x: &mut [Lanes<f32>] = x;
+            grid.gather(g, interface, x);
+            matrix.residuals_inside(grid, g, x, b.group(grid, g), |at, value| r[at] = value);
+            restrict_inside([coarse, grid], r, 1.0, inside, on_sides);
+            matrix.contribute(grid, g, x, sides);
+        };
+        let residuals = || vec![Lanes::default(); points];
+        groups.with_min_len(grid.task()).map_init(residuals, of_group).for_each(drop);
+        inflow.sum_up(grid);
         below.b.interface.fill(0.0);
-        inflow.fill(0.0);
-        for g in 0..grid.groups() {
-            grid.gather(g, x);
-            matrix.residuals_inside(grid, g, x, b, |at, r| residual[at] = r);
-            restrict_inside([coarse, grid], g, residual, 1.0, &mut below.b);
-            matrix.contribute(grid, g, x, inflow);
-        }
+        coarse.add_sides(&below.inflow.sides, &mut below.b.interface);
         let mut at_interface = vec![0.0; grid.interface()];
-        matrix.residuals_interface(grid, x, b, inflow, |a, r| {
+        matrix.residuals_interface(grid, x, b, &inflow.interface, |a, r| {
             at_interface[a] = if matrix.inverse[a] == 0.0 { 0.0 } else { r };
         });
         restrict_interface([coarse, grid], &at_interface, 1.0, &mut below.b);
@@ -225,23 +241,23 @@ impl Coarser<'_> {
     /// `1/2 x'A x` on one of the levels, in units of the finest matrix.
     pub(super) fn energy(&mut self, l: usize, x: &Field<f32>) -> f64 {
         let grid = &self.patches.grids[l];
-        let mut x = x.clone();
-        let (mut sum, mut inflow) = (0.0, vec![0.0; grid.interface()]);
+        let (mut x, mut sum) = (x.clone(), 0.0);
         let Some(matrix) = &self.levels[l].matrix else {
             let mut rows = vec![0.0; self.patches.stored.vertex().len()];
             x.for_each(grid, &self.patches.rows, |row, value| rows[row] = value);
             return self.stored.energy(&rows);
         };
-        let zero = Field::zero(grid);
-        for g in 0..grid.groups() {
-            grid.gather(g, &mut x);
+        let (zero, mut inflow) = (Field::zero(grid), Inflow::new(grid));
+        grid.gather_all(&mut x);
+        for (g, sides) in inflow.sides.chunks_mut(grid.on_sides()).enumerate() {
             let points = x.group(grid, g);
-            matrix.residuals_inside(grid, g, &x, &zero, |at, r| {
+            matrix.residuals_inside(grid, g, points, zero.group(grid, g), |at, r| {
                 sum -= 0.5 * (r.scaled::<f64>(1.0) * points[at].scaled(1.0)).0.iter().sum::<f64>();
             });
-            matrix.contribute(grid, g, &x, &mut inflow);
+            matrix.contribute(grid, g, points, sides);
         }
-        matrix.residuals_interface(grid, &x, &zero, &inflow, |a, r| {
+        inflow.sum_up(grid);
+        matrix.residuals_interface(grid, &x, &zero, &inflow.interface, |a, r| {
             sum -= 0.5 * f64::from(r) * f64::from(x.interface[a]);
         });
         sum / self.scale()

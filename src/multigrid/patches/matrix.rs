@@ -274,10 +274,9 @@ impl<T: Real> Matrix<T> {
 }
 
 /// Adds the lanes at these places.
-#[inline(always)]
-pub(super) fn add_at<T: Real>(values: &mut [T], places: &[u32; LANES], lanes: Lanes<T>) {
-    for lane in 0..LANES {
-        values[places[lane] as usize] += lanes.0[lane];
+fn add_at<T: Real>(values: &mut [T], places: &[u32; LANES], lanes: Lanes<T>) {
+    for (&a, lane) in places.iter().zip(lanes.0) {
+        values[a as usize] += lane;
     }
 }
 

@@ -5,11 +5,12 @@
 //! value of before. That does not raise the energy either: in the matrix of a patch, which is semidefinite, the entry between two points is
 //! at most the mean of their diagonals. (Three such points, as on the edges of a patch of two segments, may raise it.)
 
-use super::field::Field;
+use super::field::{Field, Inflow};
 use super::grid::Grid;
 use super::lanes::{Lanes, Real};
 use super::lattice::Lattice;
-use super::matrix::{Matrix, Rows, add_at};
+use super::matrix::{Matrix, Rows};
+use crate::parallel::prelude::*;
 
 /// Sweeps between two corrections.
 pub(super) const SWEEPS: usize = 2;
@@ -18,36 +19,57 @@ pub(super) const SWEEPS: usize = 2;
 const COLORS: [[usize; 2]; 4] = [[0, 0], [1, 1], [0, 1], [1, 0]];
 
 impl<T: Real> Matrix<T> {
-    /// Sweeps, where `BOUNDED` with values of at least zero; `first` is done to each group before. `inflow` is for what the patches
-    /// contribute to the rows of the interface.
+    /// Sweeps, where `BOUNDED` with values of at least zero; `first` is done to each group before, and what it returns is added up.
     pub(super) fn smooth<const BOUNDED: bool>(
         &self,
         grid: &Grid,
         x: &mut Field<T>,
         b: &Field<T>,
-        inflow: &mut [T],
-        mut first: impl FnMut(usize, &mut Field<T>),
-    ) {
-        inflow.fill(T::default());
-        for g in 0..grid.groups() {
-            first(g, x);
-            grid.gather(g, x);
-            self.contribute(grid, g, x, inflow);
-        }
-        self.relax_interface::<BOUNDED>(grid, x, b, inflow);
+        inflow: &mut Inflow<T>,
+        first: impl Fn(usize, &mut [Lanes<T>]) -> usize + Sync + Send,
+    ) -> usize {
+        let count = self.in_groups(grid, x, inflow, |g, interface, x| {
+            let count = first(g, x);
+            grid.gather(g, interface, x);
+            count
+        });
+        self.relax_interface::<BOUNDED>(grid, x, b, &inflow.interface);
         for _ in 0..SWEEPS {
-            inflow.fill(T::default());
-            for g in 0..grid.groups() {
-                grid.gather(g, x);
-                self.relax_inside::<BOUNDED>(grid, g, x, b);
-                self.contribute(grid, g, x, inflow);
-            }
-            self.relax_interface::<BOUNDED>(grid, x, b, inflow);
+            self.in_groups(grid, x, inflow, |g, interface, x| {
+                grid.gather(g, interface, x);
+                self.relax_inside::<BOUNDED>(grid, g, x, b.group(grid, g));
+                0
+            });
+            self.relax_interface::<BOUNDED>(grid, x, b, &inflow.interface);
         }
+        count
     }
 
-    fn relax_inside<const BOUNDED: bool>(&self, grid: &Grid, g: usize, x: &mut Field<T>, b: &Field<T>) {
-        let (x, b) = (x.group_mut(grid, g), b.group(grid, g));
+    /// Works on all groups at once, by the values at the interface; then they contribute to its rows.
+    fn in_groups(
+        &self,
+        grid: &Grid,
+        x: &mut Field<T>,
+        inflow: &mut Inflow<T>,
+        work: impl Fn(usize, &[T], &mut [Lanes<T>]) -> usize + Sync + Send,
+    ) -> usize {
+        let Field { patches, interface } = x;
+        let groups = patches.par_chunks_mut(grid.lattice.points());
+        let groups = groups.zip(inflow.sides.par_chunks_mut(grid.on_sides())).enumerate();
+        let count = groups
+            .with_min_len(grid.task())
+            .map(|(g, (x, sides))| {
+                let count = work(g, interface, x);
+                self.contribute(grid, g, x, sides);
+                count
+            })
+            .reduce(|| 0, |a, b| a + b);
+        inflow.sum_up(grid);
+        count
+    }
+
+    #[inline(always)]
+    fn relax_inside<const BOUNDED: bool>(&self, grid: &Grid, g: usize, x: &mut [Lanes<T>], b: &[Lanes<T>]) {
         match &self.truncated[g] {
             None => relax::<T, BOUNDED>(&grid.lattice, &self.uniform[g], x, b),
             Some(truncated) => relax::<T, BOUNDED>(&grid.lattice, &**truncated, x, b),
@@ -60,25 +82,23 @@ impl<T: Real> Matrix<T> {
         &self,
         grid: &Grid,
         g: usize,
-        x: &Field<T>,
-        b: &Field<T>,
+        x: &[Lanes<T>],
+        b: &[Lanes<T>],
         take: impl FnMut(usize, Lanes<T>),
     ) {
-        let (x, b) = (x.group(grid, g), b.group(grid, g));
         match &self.truncated[g] {
             None => residuals(&grid.lattice, &self.uniform[g], x, b, take),
             Some(truncated) => residuals(&grid.lattice, &**truncated, x, b, take),
         }
     }
 
-    /// Adds what the patches of a group contribute to the rows of the points on their sides, but for couplings along the sides.
+    /// What the patches of a group contribute to the rows of the points on their sides, but for couplings along the sides.
     #[inline(always)]
-    pub(super) fn contribute(&self, grid: &Grid, g: usize, x: &Field<T>, inflow: &mut [T]) {
-        let x = x.group(grid, g);
-        for (point, places) in grid.lattice.rim.iter().zip(grid.places(g).1) {
+    pub(super) fn contribute(&self, grid: &Grid, g: usize, x: &[Lanes<T>], sides: &mut [Lanes<T>]) {
+        for (point, side) in grid.lattice.rim.iter().zip(sides) {
             let [a, b] =
                 point.inward.map(|to| self.coupling(g, to.direction, to.from, T::of(1.0)) * x[to.to]);
-            add_at(inflow, places, a + b);
+            *side = a + b;
         }
     }
 

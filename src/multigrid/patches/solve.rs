@@ -4,7 +4,7 @@
 //! residual is not within the tolerance yet, what it differs by is put on the side of the load, and the cycles go on.
 
 use super::Patches;
-use super::field::Field;
+use super::field::{Field, Inflow};
 use super::finest::{Frozen, Iterate, Problem, Weight};
 use super::grid::Grid;
 use super::lanes::{LANES, Lanes};
@@ -48,9 +48,9 @@ struct Solve<'p> {
 impl<'p> Solve<'p> {
     fn new(patches: &'p Patches, k: &'p StiffnessMatrix, problem: HalfProblem) -> Result<Self, NotFactored> {
         let finest = &patches.grids[patches.finest()];
-        let of_mesh = |values: &[f64]| Field::of(finest, &patches.vertices, |a| values[a]);
-        let (mut loads, mut heights) =
-            (vec![of_mesh(&problem.load)], vec![of_mesh(&problem.height).interface]);
+        let height = |&a: &u32| if Numbers::is_one(a) { problem.height[a as usize] } else { 0.0 };
+        let mut loads = vec![Field::of(finest, &patches.vertices, |a| problem.load[a])];
+        let mut heights: Vec<Vec<f64>> = vec![patches.at_interface.iter().map(height).collect()];
         for (coarse, fine) in patches.grids.iter().zip(&patches.grids[1..]).rev() {
             let (load, height) = (&loads[loads.len() - 1], &heights[heights.len() - 1]);
             let injected = coarse.places_on(fine).map(|place| height[place]).collect();
@@ -156,12 +156,12 @@ impl<'p> Solve<'p> {
             weight: if is_finest { patches.weight(weight) } else { Weight::one(grid) },
             tolerance: if is_finest { problem.tolerance } else { 0.0 },
         };
-        let iterate = Iterate { x, frozen: Frozen::nothing(grid, is_bounded) };
+        let iterate = Iterate { x, frozen: Frozen::nothing(grid) };
         Cycles {
             finest: l,
             last: iterate.clone(),
             iterate,
-            inflow: vec![0.0; grid.interface()],
+            inflow: Inflow::new(grid),
             changed: Vec::new(),
             problem,
             coarser,
@@ -235,7 +235,7 @@ impl Patches {
         let of_group = |numbers: &[[u32; LANES]]| Lanes(numbers[inside].map(weight));
         Weight {
             inside: self.vertices.0.chunks(points).map(of_group).collect(),
-            interface: self.numbers_of_interface(grid).into_iter().map(weight).collect(),
+            interface: self.at_interface.iter().copied().map(weight).collect(),
         }
     }
 }
@@ -270,7 +270,7 @@ struct Cycles<'c, 'p> {
     iterate: Iterate,
     /// The iterate before.
     last: Iterate,
-    inflow: Vec<f64>,
+    inflow: Inflow<f64>,
     /// The groups in which the frozen points have changed.
     changed: Vec<usize>,
 }
@@ -336,9 +336,12 @@ impl Cycle for Cycles<'_, '_> {
 /// `P' f` from one grid to the one below.
 fn restricted(grids: [&Grid; 2], f: &Field<f64>) -> Field<f64> {
     let mut coarse = Field::zero(grids[0]);
-    for g in 0..grids[1].groups() {
-        restrict_inside(grids, g, f.group(grids[1], g), 1.0, &mut coarse);
+    let mut sides = vec![Lanes::default(); grids[0].groups() * grids[0].on_sides()];
+    let of_groups = sides.chunks_mut(grids[0].on_sides()).enumerate();
+    for (g, on_sides) in of_groups {
+        restrict_inside(grids, f.group(grids[1], g), 1.0, coarse.group_mut(grids[0], g), on_sides);
     }
+    grids[0].add_sides(&sides, &mut coarse.interface);
     restrict_interface(grids, &f.interface, 1.0, &mut coarse);
     coarse
 }
@@ -347,10 +350,10 @@ fn restricted(grids: [&Grid; 2], f: &Field<f64>) -> Field<f64> {
 fn prolonged(grids: [&Grid; 2], x: &mut Field<f64>, lower: f64) -> Field<f64> {
     let mut fine = Field::zero(grids[1]);
     prolong_interface(grids, &x.interface, |a, value| fine.interface[a] = larger(value, lower));
+    grids[0].gather_all(x);
     for g in 0..grids[1].groups() {
-        grids[0].gather(g, x);
         let points = fine.group_mut(grids[1], g);
-        prolong_inside(grids, g, x, |at, value| {
+        prolong_inside(grids, x.group(grids[0], g), |at, value| {
             points[at] = Lanes(value.0.map(|value| larger(value, lower)))
         });
     }

@@ -73,7 +73,7 @@ fn patches_are_found_where_there_are_some() {
 /// Some random points frozen, in parts of all sizes.
 fn frozen(patches: &Patches, random: &mut Random) -> (Frozen, Vec<usize>) {
     let grid = &patches.grids[patches.finest()];
-    let before = Frozen::nothing(grid, true);
+    let before = Frozen::nothing(grid);
     let mut frozen = before.clone();
     let wide = random.below(2) == 0;
     for lanes in &mut frozen.patches {
@@ -105,10 +105,10 @@ fn drawn<T: Real>(grid: &Grid, random: &mut Random) -> Field<T> {
 fn prolonged(grids: [&Grid; 2], mut x: Field<f64>) -> Field<f64> {
     let mut fine = Field::zero(grids[1]);
     prolong_interface(grids, &x.interface, |a, value| fine.interface[a] = value);
+    grids[0].gather_all(&mut x);
     for g in 0..grids[1].groups() {
-        grids[0].gather(g, &mut x);
         let points = fine.group_mut(grids[1], g);
-        prolong_inside(grids, g, &x, |at, value| points[at] = value);
+        prolong_inside(grids, x.group(grids[0], g), |at, value| points[at] = value);
     }
     fine
 }
@@ -158,7 +158,7 @@ fn truncated_matrices_have_the_energies_of_truncated_functions() {
         coarser.restart(patches.finest()).unwrap();
         for round in 0..3 {
             let (frozen, changed) = frozen(&patches, &mut random);
-            let nothing = Frozen::nothing(&patches.grids[patches.finest()], true);
+            let nothing = Frozen::nothing(&patches.grids[patches.finest()]);
             coarser.truncate(patches.finest(), &frozen, &changed).unwrap();
             for l in 0..patches.finest() {
                 let x = drawn::<f32>(&patches.grids[l], &mut random);

@@ -9,12 +9,10 @@ use super::lanes::{Lanes, Real};
 #[inline(always)]
 pub(super) fn prolong_inside<T: Real>(
     [coarse, fine]: [&Grid; 2],
-    g: usize,
-    c: &Field<T>,
+    c: &[Lanes<T>],
     mut put: impl FnMut(usize, Lanes<T>),
 ) {
     let (m, half) = (fine.segments(), Lanes::all(T::of(0.5)));
-    let c = c.group(coarse, g);
     for j in 1..m - 1 {
         let here = fine.lattice.at(0, j);
         let [down, up] = [j / 2, j.div_ceil(2)].map(|j| &c[coarse.lattice.at(0, j)..]);
@@ -44,14 +42,15 @@ pub(super) fn prolong_interface<T: Real>([coarse, fine]: [&Grid; 2], c: &[T], mu
     }
 }
 
-/// Adds the restriction of residuals inside the patches of a group, times a factor, to a coarse functional.
+/// The restriction of residuals inside the patches of a group, times a factor: inside the coarse patches, and what it adds at the points
+/// on their sides.
 #[inline(always)]
 pub(super) fn restrict_inside<T: Real, U: Real>(
     [coarse, fine]: [&Grid; 2],
-    g: usize,
     r: &[Lanes<T>],
     factor: f64,
-    c: &mut Field<U>,
+    inside: &mut [Lanes<U>],
+    on_sides: &mut [Lanes<U>],
 ) {
     let (half, m) = (Lanes::all(T::of(0.5)), coarse.segments());
     for j in 1..m - 1 {
@@ -60,15 +59,14 @@ pub(super) fn restrict_inside<T: Real, U: Real>(
         for i in 1..m - j {
             let k = 2 * i;
             let beside = (row[k + 1] + row[k - 1]) + ((up[k] + down[k]) + (down[k + 1] + up[k - 1]));
-            c.group_mut(coarse, g)[out + i] = (row[k] + half * beside).scaled(factor);
+            inside[out + i] = (row[k] + half * beside).scaled(factor);
         }
     }
-    let (coarse_sides, sides) = (coarse.places(g).1, &fine.lattice.rim);
     for side in 0..3 {
-        for t in 0..m - 1 {
-            let [a, b] = sides[side * (2 * m - 1) + 2 * t + 1].inward.map(|to| r[to.to]);
-            let sum = (half * (a + b)).scaled::<U>(factor);
-            super::matrix::add_at(&mut c.interface, &coarse_sides[side * (m - 1) + t], sum);
+        let points = fine.lattice.rim[side * (2 * m - 1)..][..2 * m - 1].iter().skip(1).step_by(2);
+        for (sum, point) in on_sides[side * (m - 1)..].iter_mut().zip(points) {
+            let [a, b] = point.inward.map(|to| r[to.to]);
+            *sum = (half * (a + b)).scaled(factor);
         }
     }
 }
