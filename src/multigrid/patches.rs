@@ -8,16 +8,13 @@
 
 mod field;
 mod finest;
-mod galerkin;
 mod grid;
 mod lanes;
-mod lattice;
 mod levels;
 mod matrix;
-mod numbers;
-mod partition;
 mod relaxation;
 mod solve;
+mod stencils;
 #[cfg(test)]
 mod tests;
 mod transfer;
@@ -28,17 +25,13 @@ use std::sync::Arc;
 
 use sprs::TriMatI;
 
-use self::galerkin::Galerkin;
-use self::grid::Grid;
+use self::grid::{Grid, Lattice, Numbers, Partition};
 use self::lanes::LANES;
-use self::lattice::Lattice;
-use self::matrix::{Entries, Stencil};
-use self::numbers::Numbers;
-use self::partition::Partition;
-use crate::fem::{StiffnessMatrix, row_of};
+use self::matrix::{Entries, Galerkin, Matrix, Stencil};
+use self::stencils::{is_assembled, stencils};
+use crate::fem::StiffnessMatrix;
 use crate::mesh::{Mesh, Parents};
 use crate::multigrid::hierarchy::{Genealogy, Hierarchy};
-use crate::parallel::prelude::*;
 
 /// Refinements of the patches on the coarsest level that is worked on patch by patch; its rows are those of the level below.
 const STORED: usize = 3;
@@ -48,9 +41,6 @@ const MOST: usize = 6;
 
 /// Fewer patches are cut up once more: they would leave lanes empty.
 const FEWEST_PATCHES: usize = 4 * LANES;
-
-/// Two entries that differ by less than this fraction of the diagonal are the same but for the rounding of the vertices.
-const SAME_ENTRY: f64 = 1e-10;
 
 /// The levels of a discretization whose mesh has patches.
 pub(crate) struct Patches {
@@ -116,7 +106,8 @@ impl Patches {
             refinements: depth,
             is_free: free.to_vec(),
         };
-        patches.is_matrix(k, free).then_some(patches)
+        let matrix = Matrix::new(patches.finest_grid(), &patches.stencils, 1.0);
+        is_assembled(&matrix, patches.finest_grid(), &patches.at_interface, k, free).then_some(patches)
     }
 
     /// How many levels follow the refinements that made the mesh.
@@ -127,6 +118,10 @@ impl Patches {
     /// The number of the finest grid.
     fn finest(&self) -> usize {
         self.grids.len() - 1
+    }
+
+    fn finest_grid(&self) -> &Grid {
+        &self.grids[self.finest()]
     }
 
     /// The largest of the couplings.
@@ -182,67 +177,6 @@ fn coarsest(mesh: &Mesh, refinements: &[Arc<Parents>]) -> Option<Vec<[usize; 3]>
     Some(triangles.into_owned())
 }
 
-/// The stencil of each patch, in groups, from the row of a point inside; `None` unless all rows inside are like that, and free.
-fn stencils(
-    partition: &Partition,
-    lattice: &Lattice,
-    numbers: &Numbers,
-    k: &StiffnessMatrix,
-    free: &[bool],
-) -> Option<Vec<[Stencil; LANES]>> {
-    let of_group = |(g, numbers): (usize, &[[u32; LANES]])| {
-        let mut stencils = [[1.0; 3]; LANES];
-        for (lane, _) in partition.group(g) {
-            let number = |[i, j]: [usize; 2]| numbers[lattice.at(i, j)][lane] as usize;
-            let entry =
-                |a: usize, b: usize| row_of(k, a).find(|&(column, _)| column == b).map_or(0.0, |(_, e)| e);
-            stencils[lane] = std::array::from_fn(|direction| {
-                let neighbour = lattice.neighbour([1, 1], direction).expect("the point is inside");
-                -entry(number([1, 1]), number(neighbour))
-            });
-            let stencil = stencils[lane];
-            if !lattice
-                .inside()
-                .all(|point| free[number(point)] && has_stencil(k, lattice, point, number, stencil))
-            {
-                return None;
-            }
-        }
-        Some(stencils)
-    };
-    numbers.0.par_chunks(lattice.points()).enumerate().map(of_group).collect()
-}
-
-/// Whether the row of a point inside a patch has these entries.
-fn has_stencil(
-    k: &StiffnessMatrix,
-    lattice: &Lattice,
-    [i, j]: [usize; 2],
-    number: impl Fn([usize; 2]) -> usize,
-    stencil: Stencil,
-) -> bool {
-    let here = number([i, j]);
-    let neighbours = [[i + 1, j], [i - 1, j], [i, j + 1], [i, j - 1], [i + 1, j - 1], [i - 1, j + 1]];
-    debug_assert!(neighbours.iter().all(|[i, j]| i + j <= lattice.segments));
-    let neighbours = neighbours.map(number);
-    let diagonal = 2.0 * stencil.iter().sum::<f64>();
-    let same = |a: f64, b: f64| (a - b).abs() <= SAME_ENTRY * diagonal;
-    let mut missing = 2 * stencil.iter().filter(|&&c| !same(c, 0.0)).count();
-    for (column, entry) in row_of(k, here) {
-        let place = neighbours.iter().position(|&neighbour| neighbour == column);
-        let expected = match place {
-            Some(place) => -stencil[place / 2],
-            None if column == here => diagonal,
-            None => 0.0,
-        };
-        if !same(entry, expected) {
-            return false;
-        }
-        missing -= usize::from(place.is_some() && !same(entry, 0.0));
-    }
-    missing == 0
-}
-
 /// Marks what is held on all grids; `None` where a value is held on an edge without those on both sides of it: a coarse function that is
 /// zero there would not be so on the finer grid.
 fn hold(grids: &mut [Grid], vertices: &Numbers, free: &[bool]) -> Option<()> {
@@ -291,40 +225,6 @@ fn stored_levels(
     let mut row = vec![0; count];
     (0..).zip(hierarchy.vertex()).for_each(|(i, &a)| row[a as usize] = i);
     (vertices.map(|a| row[a as usize]), hierarchy)
-}
-
-impl Patches {
-    /// Whether the rows at the interface are those of a matrix, too.
-    fn is_matrix(&self, k: &StiffnessMatrix, free: &[bool]) -> bool {
-        let grid = &self.grids[self.finest()];
-        let matrix = matrix::Matrix::<f64>::new(grid, &self.stencils, 1.0);
-        let number = &self.at_interface;
-        let (m, partition) = (grid.segments(), &grid.partition);
-        let entry = |a: u32, b: u32| {
-            row_of(k, a as usize).find(|&(column, _)| column == b as usize).map_or(0.0, |(_, entry)| entry)
-        };
-        let same = |a: usize, x: f64, y: f64| (x - y).abs() <= SAME_ENTRY * matrix.diagonal[a];
-        let has_diagonal = |a: usize| {
-            let vertex = number[a];
-            !Numbers::is_one(vertex)
-                || !free[vertex as usize]
-                || same(a, entry(vertex, vertex), matrix.diagonal[a])
-        };
-        (0..number.len()).all(has_diagonal)
-            && partition.edges.iter().enumerate().all(|(edge, &[start, end])| {
-                let first = partition.first_on_edge(edge, m);
-                let place = |t: usize| match t {
-                    0 => start as usize,
-                    t if t == m => end as usize,
-                    t => first + t - 1,
-                };
-                (0..m).all(|piece| {
-                    let [a, b] = [place(piece), place(piece + 1)];
-                    let is_row = free[number[a] as usize] || free[number[b] as usize];
-                    !is_row || same(a, -entry(number[a], number[b]), matrix.along[edge * m + piece])
-                })
-            })
-    }
 }
 
 /// The vertices at the interface of a grid.

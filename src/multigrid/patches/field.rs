@@ -1,8 +1,7 @@
 //! Functions and functionals on a level of the patches.
 
-use super::grid::Grid;
+use super::grid::{Grid, Numbers};
 use super::lanes::{LANES, Lanes, Real};
-use super::numbers::Numbers;
 use crate::parallel::BLOCK;
 use crate::parallel::prelude::*;
 
@@ -67,6 +66,13 @@ impl<T: Real> Field<T> {
                     }
                 }
             }
+        }
+    }
+
+    /// Gives the values at the interface to all patches.
+    pub(super) fn gather(&mut self, grid: &Grid) {
+        for (g, patches) in self.patches.chunks_mut(grid.lattice.points()).enumerate() {
+            grid.gather(g, &self.interface, patches);
         }
     }
 

@@ -106,7 +106,7 @@ impl Problem<'_> {
         new.x.interface.copy_from_slice(&old.x.interface);
         if is_corrected {
             cut += self.correct_interface::<BOUNDED>(old, &mut new.x, below);
-            below.grid.gather_all(below.x);
+            below.x.gather(below.grid);
         }
         cut += matrix.smooth::<BOUNDED>(grid, &mut new.x, b, inflow, |g, x| {
             if is_corrected {
@@ -264,7 +264,7 @@ impl Problem<'_> {
     pub(super) fn residual(&self, x: &Field<f64>, b: &Field<f64>) -> Field<f64> {
         let Self { grid, matrix, .. } = self;
         let mut x = x.clone();
-        grid.gather_all(&mut x);
+        x.gather(grid);
         let mut residual = Field::zero(grid);
         let mut inflow = Inflow::new(grid);
         for (g, sides) in inflow.sides.chunks_mut(grid.on_sides()).enumerate() {
@@ -291,7 +291,7 @@ impl Problem<'_> {
         let grid = self.grid;
         let mut corrected = iterate.x.clone();
         self.correct_interface::<true>(iterate, &mut corrected, below);
-        below.grid.gather_all(below.x);
+        below.x.gather(below.grid);
         for g in 0..grid.groups() {
             self.correct_group::<true>(g, iterate, corrected.group_mut(grid, g), below);
         }

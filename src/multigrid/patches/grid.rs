@@ -1,11 +1,16 @@
 //! The points of a level, and how those on the sides of the patches hang together.
 
+mod lattice;
+mod numbers;
+mod partition;
+
+pub(super) use lattice::{DIRECTIONS, Lattice, parents};
+pub(super) use numbers::Numbers;
+pub(super) use partition::Partition;
+
 use std::sync::Arc;
 
-use super::field::Field;
 use super::lanes::{LANES, Lanes, Real};
-use super::lattice::Lattice;
-use super::partition::Partition;
 use crate::parallel::BLOCK;
 
 /// A level: all patches refined into lattices of so many segments.
@@ -77,13 +82,6 @@ impl Grid {
     pub(super) fn gather<T: Real>(&self, g: usize, interface: &[T], patches: &mut [Lanes<T>]) {
         for (at, places) in self.rim(g) {
             patches[at] = Lanes(places.map(|a| interface[a as usize]));
-        }
-    }
-
-    /// Gives the values at the interface to all patches.
-    pub(super) fn gather_all<T: Real>(&self, x: &mut Field<T>) {
-        for (g, patches) in x.patches.chunks_mut(self.lattice.points()).enumerate() {
-            self.gather(g, &x.interface, patches);
         }
     }
 

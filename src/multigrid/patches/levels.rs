@@ -195,7 +195,7 @@ impl<'p> Coarser<'p> {
         let Level { matrix, x, b, inflow } = level;
         let matrix = matrix.as_ref().expect("a lattice has a matrix");
         if correct {
-            coarse.gather_all(&mut below.x);
+            below.x.gather(coarse);
         }
         matrix.smooth::<false>(grid, x, b, inflow, |g, x| {
             let correction = below.x.group(coarse, g);
@@ -248,7 +248,7 @@ impl Coarser<'_> {
             return self.stored.energy(&rows);
         };
         let (zero, mut inflow) = (Field::zero(grid), Inflow::new(grid));
-        grid.gather_all(&mut x);
+        x.gather(grid);
         for (g, sides) in inflow.sides.chunks_mut(grid.on_sides()).enumerate() {
             let points = x.group(grid, g);
             matrix.residuals_inside(grid, g, points, zero.group(grid, g), |at, r| {

@@ -6,9 +6,8 @@
 //! at most the mean of their diagonals. (Three such points, as on the edges of a patch of two segments, may raise it.)
 
 use super::field::{Field, Inflow};
-use super::grid::Grid;
+use super::grid::{Grid, Lattice};
 use super::lanes::{Lanes, Real};
-use super::lattice::Lattice;
 use super::matrix::{Matrix, Rows};
 use crate::parallel::prelude::*;
 

@@ -6,11 +6,10 @@
 use super::Patches;
 use super::field::{Field, Inflow};
 use super::finest::{Frozen, Iterate, Problem, Weight};
-use super::grid::Grid;
+use super::grid::{Grid, Numbers};
 use super::lanes::{LANES, Lanes};
 use super::levels::Coarser;
 use super::matrix::Matrix;
-use super::numbers::Numbers;
 use super::transfer::{prolong_inside, prolong_interface, restrict_inside, restrict_interface};
 use crate::fem::{StiffnessMatrix, row_of};
 use crate::multigrid::cholesky::NotFactored;
@@ -47,7 +46,7 @@ struct Solve<'p> {
 
 impl<'p> Solve<'p> {
     fn new(patches: &'p Patches, k: &'p StiffnessMatrix, problem: HalfProblem) -> Result<Self, NotFactored> {
-        let finest = &patches.grids[patches.finest()];
+        let finest = patches.finest_grid();
         let height = |&a: &u32| if Numbers::is_one(a) { problem.height[a as usize] } else { 0.0 };
         let mut loads = vec![Field::of(finest, &patches.vertices, |a| problem.load[a])];
         let mut heights: Vec<Vec<f64>> = vec![patches.at_interface.iter().map(height).collect()];
@@ -208,7 +207,7 @@ impl<'p> Solve<'p> {
     /// Puts what the assembled matrix differs by on the side of the load.
     fn refine_load(&mut self, x: &Field<f64>, residual: &[f64]) {
         let patches = self.patches;
-        let grid = &patches.grids[patches.finest()];
+        let grid = patches.finest_grid();
         let load = &self.loads[patches.finest()];
         let by_stencils = Problem {
             grid,
@@ -229,7 +228,7 @@ impl<'p> Solve<'p> {
 impl Patches {
     /// The weights on the finest grid.
     fn weight(&self, at: impl Fn(usize) -> f64) -> Weight {
-        let grid = &self.grids[self.finest()];
+        let grid = self.finest_grid();
         let (points, inside) = (grid.lattice.points(), grid.lattice.at(1, 1));
         let weight = |number: u32| if Numbers::is_one(number) { at(number as usize) } else { 0.0 };
         let of_group = |numbers: &[[u32; LANES]]| Lanes(numbers[inside].map(weight));
@@ -350,7 +349,7 @@ fn restricted(grids: [&Grid; 2], f: &Field<f64>) -> Field<f64> {
 fn prolonged(grids: [&Grid; 2], x: &mut Field<f64>, lower: f64) -> Field<f64> {
     let mut fine = Field::zero(grids[1]);
     prolong_interface(grids, &x.interface, |a, value| fine.interface[a] = larger(value, lower));
-    grids[0].gather_all(x);
+    x.gather(grids[0]);
     for g in 0..grids[1].groups() {
         let points = fine.group_mut(grids[1], g);
         prolong_inside(grids, x.group(grids[0], g), |at, value| {

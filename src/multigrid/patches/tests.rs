@@ -72,7 +72,7 @@ fn patches_are_found_where_there_are_some() {
 
 /// Some random points frozen, in parts of all sizes.
 fn frozen(patches: &Patches, random: &mut Random) -> (Frozen, Vec<usize>) {
-    let grid = &patches.grids[patches.finest()];
+    let grid = patches.finest_grid();
     let before = Frozen::nothing(grid);
     let mut frozen = before.clone();
     let wide = random.below(2) == 0;
@@ -105,7 +105,7 @@ fn drawn<T: Real>(grid: &Grid, random: &mut Random) -> Field<T> {
 fn prolonged(grids: [&Grid; 2], mut x: Field<f64>) -> Field<f64> {
     let mut fine = Field::zero(grids[1]);
     prolong_interface(grids, &x.interface, |a, value| fine.interface[a] = value);
-    grids[0].gather_all(&mut x);
+    x.gather(grids[0]);
     for g in 0..grids[1].groups() {
         let points = fine.group_mut(grids[1], g);
         prolong_inside(grids, x.group(grids[0], g), |at, value| points[at] = value);
@@ -122,7 +122,7 @@ fn to_double(x: &Field<f32>) -> Field<f64> {
 
 /// `1/2 x'A x` on the finest grid.
 fn energy(patches: &Patches, x: &Field<f64>) -> f64 {
-    let grid = &patches.grids[patches.finest()];
+    let grid = patches.finest_grid();
     let zero = Field::zero(grid);
     let problem = Problem {
         grid,

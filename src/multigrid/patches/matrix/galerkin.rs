@@ -1,12 +1,12 @@
 //! The entries of the patches on a coarser level from those on the finer one.
 
-use super::lanes::{LANES, Lanes};
-use super::lattice::{DIRECTIONS, Lattice, parents};
-use super::matrix::Entries;
+use super::entries::Entries;
+use crate::multigrid::patches::grid::{DIRECTIONS, Lattice, parents};
+use crate::multigrid::patches::lanes::{LANES, Lanes};
 
 /// `P' A P` in a patch, as a list of terms.
 #[derive(Debug)]
-pub(super) struct Galerkin {
+pub(in crate::multigrid) struct Galerkin {
     terms: Vec<Term>,
     coarse: Lattice,
 }
@@ -28,7 +28,7 @@ struct Entry {
 
 impl Galerkin {
     /// To lattices of half as many segments.
-    pub(super) fn new(fine: &Lattice) -> Self {
+    pub(in crate::multigrid) fn new(fine: &Lattice) -> Self {
         let mut sums = Self { terms: Vec::new(), coarse: Lattice::new(fine.segments / 2) };
         for point in fine.all() {
             let at = fine.at(point[0], point[1]) as u32;
@@ -76,7 +76,7 @@ impl Galerkin {
     }
 
     /// The coarser entries.
-    pub(super) fn apply(&self, fine: &Entries<f64>) -> Entries<f64> {
+    pub(in crate::multigrid) fn apply(&self, fine: &Entries<f64>) -> Entries<f64> {
         let mut coarse = Entries::zero(&self.coarse);
         for Term { from, to, factor } in &self.terms {
             let from = match from.direction {

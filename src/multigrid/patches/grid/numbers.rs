@@ -1,9 +1,9 @@
 //! Which vertex of a mesh each point of the patches is.
 
-use super::lanes::LANES;
 use super::lattice::{Lattice, parents};
 use super::partition::Partition;
 use crate::mesh::Parents;
+use crate::multigrid::patches::lanes::LANES;
 use crate::parallel::prelude::*;
 
 /// In place of a point of a patch that is not there.
@@ -11,11 +11,11 @@ const NONE: u32 = u32::MAX;
 
 /// For each point of the patches, group by group, the number of its vertex.
 #[derive(Debug, Clone)]
-pub(super) struct Numbers(pub(super) Vec<[u32; LANES]>);
+pub(in crate::multigrid) struct Numbers(pub(in crate::multigrid) Vec<[u32; LANES]>);
 
 impl Numbers {
     /// The corners of the patches, by the vertices of the coarse mesh.
-    pub(super) fn of_corners(partition: &Partition) -> Self {
+    pub(in crate::multigrid) fn of_corners(partition: &Partition) -> Self {
         let mut numbers = vec![[NONE; LANES]; 3 * partition.groups()];
         for g in 0..partition.groups() {
             for (lane, patch) in partition.group(g) {
@@ -28,7 +28,12 @@ impl Numbers {
     }
 
     /// The points of lattices with twice the segments, by the vertices of the refined mesh; `None` if it is not refined uniformly.
-    pub(super) fn refined(&self, coarse: &Lattice, fine: &Lattice, refinement: &Parents) -> Option<Self> {
+    pub(in crate::multigrid) fn refined(
+        &self,
+        coarse: &Lattice,
+        fine: &Lattice,
+        refinement: &Parents,
+    ) -> Option<Self> {
         let midpoints = Midpoints::of(refinement);
         let mut numbers = vec![[NONE; LANES]; self.0.len() / coarse.points() * fine.points()];
         let groups = numbers.par_chunks_mut(fine.points()).zip(self.0.par_chunks(coarse.points()));
@@ -45,13 +50,13 @@ impl Numbers {
     }
 
     /// Each number replaced by another one.
-    pub(super) fn map(&self, number: impl Fn(u32) -> u32) -> Self {
+    pub(in crate::multigrid) fn map(&self, number: impl Fn(u32) -> u32) -> Self {
         Self(self.0.iter().map(|lanes| lanes.map(|a| if a == NONE { NONE } else { number(a) })).collect())
     }
 
     /// Whether there is a point.
     #[inline(always)]
-    pub(super) fn is_one(number: u32) -> bool {
+    pub(in crate::multigrid) fn is_one(number: u32) -> bool {
         number != NONE
     }
 }

@@ -3,19 +3,19 @@
 //! The *interface* of a level are the vertices of the coarse mesh and the points on its edges: first the vertices, then the points
 //! of each edge from its first end to its second, last a place for what has no point.
 
-use super::lanes::LANES;
 use super::lattice::Lattice;
+use crate::multigrid::patches::lanes::LANES;
 
 /// Patches and the edges and vertices at which they meet.
 #[derive(Debug)]
-pub(super) struct Partition {
-    pub(super) vertices: usize,
+pub(in crate::multigrid) struct Partition {
+    pub(in crate::multigrid) vertices: usize,
     /// The vertices of each patch.
-    pub(super) corners: Vec<[u32; 3]>,
+    pub(in crate::multigrid) corners: Vec<[u32; 3]>,
     /// The edges along the sides of each patch.
     sides: Vec<[Side; 3]>,
     /// The ends of each edge, the smaller number first.
-    pub(super) edges: Vec<[u32; 2]>,
+    pub(in crate::multigrid) edges: Vec<[u32; 2]>,
     /// Where the edges at each vertex start among the spokes.
     first_spoke: Vec<u32>,
     spokes: Vec<Spoke>,
@@ -31,15 +31,15 @@ struct Side {
 
 /// An edge seen from one of its ends.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Spoke {
-    pub(super) edge: usize,
+pub(in crate::multigrid) struct Spoke {
+    pub(in crate::multigrid) edge: usize,
     /// Whether that is the second end.
-    pub(super) is_second: bool,
+    pub(in crate::multigrid) is_second: bool,
 }
 
 impl Partition {
     /// By triangles over so many vertices.
-    pub(super) fn new(vertices: usize, triangles: &[[usize; 3]]) -> Self {
+    pub(in crate::multigrid) fn new(vertices: usize, triangles: &[[usize; 3]]) -> Self {
         let corners: Vec<[u32; 3]> = triangles.iter().map(|corners| corners.map(|a| a as u32)).collect();
         let ends = |[a, b, c]: [u32; 3]| [[a, b], [a, c], [b, c]];
         let sorted = |[a, b]: [u32; 2]| [a.min(b), a.max(b)];
@@ -65,52 +65,58 @@ impl Partition {
     }
 
     /// The groups of patches that are side by side.
-    pub(super) fn groups(&self) -> usize {
+    pub(in crate::multigrid) fn groups(&self) -> usize {
         self.corners.len().div_ceil(LANES)
     }
 
     /// The patches of a group, with their lanes.
-    pub(super) fn group(&self, g: usize) -> impl Iterator<Item = (usize, usize)> + use<> {
+    pub(in crate::multigrid) fn group(&self, g: usize) -> impl Iterator<Item = (usize, usize)> + use<> {
         let first = LANES * g;
         (first..self.corners.len().min(first + LANES)).map(move |patch| (patch - first, patch))
     }
 
     /// The edges at a vertex.
-    pub(super) fn spokes(&self, vertex: usize) -> &[Spoke] {
+    pub(in crate::multigrid) fn spokes(&self, vertex: usize) -> &[Spoke] {
         &self.spokes[self.first_spoke[vertex] as usize..self.first_spoke[vertex + 1] as usize]
     }
 
     /// The length of vectors over the interface.
-    pub(super) fn interface(&self, segments: usize) -> usize {
+    pub(in crate::multigrid) fn interface(&self, segments: usize) -> usize {
         self.vertices + self.edges.len() * (segments - 1) + 1
     }
 
     /// The first point of an edge between its ends.
     #[inline(always)]
-    pub(super) fn first_on_edge(&self, edge: usize, segments: usize) -> usize {
+    pub(in crate::multigrid) fn first_on_edge(&self, edge: usize, segments: usize) -> usize {
         self.vertices + edge * (segments - 1)
     }
 
     /// The point of an edge next to one of its ends, if there are at least two segments.
     #[inline(always)]
-    pub(super) fn nearest(&self, spoke: Spoke, segments: usize) -> usize {
+    pub(in crate::multigrid) fn nearest(&self, spoke: Spoke, segments: usize) -> usize {
         self.first_on_edge(spoke.edge, segments) + if spoke.is_second { segments - 2 } else { 0 }
     }
 
     /// The piece of an edge at one of its ends.
     #[inline(always)]
-    pub(super) fn piece(&self, spoke: Spoke, segments: usize) -> usize {
+    pub(in crate::multigrid) fn piece(&self, spoke: Spoke, segments: usize) -> usize {
         spoke.edge * segments + if spoke.is_second { segments - 1 } else { 0 }
     }
 
     /// The piece of an edge that is so many pieces away from the start of the side of a patch.
-    pub(super) fn piece_of_side(&self, patch: usize, side: usize, piece: usize, segments: usize) -> usize {
+    pub(in crate::multigrid) fn piece_of_side(
+        &self,
+        patch: usize,
+        side: usize,
+        piece: usize,
+        segments: usize,
+    ) -> usize {
         let Side { edge, is_reversed } = self.sides[patch][side];
         edge as usize * segments + if is_reversed { segments - 1 - piece } else { piece }
     }
 
     /// The places in the interface of the corners of a patch, and of its points on the sides in the order of a lattice.
-    pub(super) fn rim(&self, patch: usize, lattice: &Lattice) -> impl Iterator<Item = u32> {
+    pub(in crate::multigrid) fn rim(&self, patch: usize, lattice: &Lattice) -> impl Iterator<Item = u32> {
         let segments = lattice.segments;
         let on_sides = self.sides[patch].into_iter().flat_map(move |Side { edge, is_reversed }| {
             let first = self.first_on_edge(edge as usize, segments);
