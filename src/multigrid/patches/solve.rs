@@ -191,10 +191,15 @@ impl<'p> Solve<'p> {
             (residual, defect * problem.weight[a])
         };
         let rows = (0..x.len()).into_par_iter().with_min_len(BLOCK);
-        let (residual, defects): (Vec<f64>, Vec<f64>) = rows.map(row).unzip();
-        let violation = defects
-            .into_iter()
-            .fold(0.0, |worst: f64, defect| if defect.is_nan() { f64::INFINITY } else { worst.max(defect) });
+        let rows: Vec<(f64, f64)> = rows.map(row).collect();
+        let violation =
+            rows.iter().fold(
+                0.0,
+                |worst: f64, &(_, defect)| {
+                    if defect.is_nan() { f64::INFINITY } else { worst.max(defect) }
+                },
+            );
+        let residual = rows.into_iter().map(|(residual, _)| residual).collect();
         Assembled { x, residual, violation }
     }
 
