@@ -17,12 +17,13 @@ use crate::qp::Status;
 
 const NAME: &str = "multigrid";
 
-/// The pair decoupled, both halves by multigrid, one on each of two threads; one membrane with at most one obstacle; or any other
-/// stack, all membranes at once.
+/// The pair decoupled, both halves by multigrid at once; one membrane with at most one obstacle; or any other stack, all membranes at
+/// once.
 ///
 /// Truncated nonsmooth Newton multigrid for the gap, plain multigrid for the sum, on the refinements that made the mesh and
 /// on algebraic levels below them; on algebraic levels alone where it stalls on those, as on stretched triangles; nested
-/// iteration from the coarsest level. The cost of a cycle is linear, and the number
+/// iteration from the coarsest level. Inside the triangles of a coarse mesh that has been refined uniformly, levels are lattices of which
+/// nothing is stored. The cost of a cycle is linear, and the number
 /// of cycles does not depend on the size of the mesh. The energy falls in every cycle. It ends when the contact set stays and
 /// the residuals are within the tolerance. Results do not depend on the number of threads.
 ///
