@@ -3,6 +3,10 @@
 //! Line by line of pixels, and on each only between the ends of what it cuts out of the shape: the work is in proportion to
 //! the pixels painted and to the lines that a shape meets in its shorter direction (at most four times as many), not to its bounding box.
 
+mod bands;
+
+pub(crate) use bands::in_bands;
+
 use std::ops::Range;
 
 use crate::geometry::barycentric_gradients;
@@ -22,7 +26,7 @@ pub(crate) fn triangle(
 ) {
     let bounds = [0, 1].map(|axis| extent(corners.map(|p| p[axis])));
     // Most triangles of a fine mesh have no pixel.
-    if [0, 1].into_iter().any(|axis| pixel_range(bounds[axis], size[axis]).is_empty()) {
+    if [1, 0].into_iter().any(|axis| pixel_range(bounds[axis], size[axis]).is_empty()) {
         return;
     }
     let Some(gradients) = barycentric_gradients(corners) else { return };

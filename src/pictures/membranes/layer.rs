@@ -30,6 +30,47 @@ struct Texel {
     kind: Kind,
 }
 
+/// A vertex of a surface.
+struct Corner {
+    /// The corner of fine pixels next to it.
+    at: [f64; 2],
+    nearness: f64,
+    /// The place in the box, along the cut and away from the viewer.
+    place: [f64; 2],
+    /// The brightness of the surface.
+    shade: f64,
+    /// Between the membranes, on the axis of heights.
+    gap: f64,
+    contact: bool,
+}
+
+/// Grid lines in one direction, on one triangle.
+struct Rule {
+    /// How many there are on a length of 1.
+    lines: f64,
+    /// How far from its middle a line is drawn, where they are 1 apart.
+    reach: f64,
+    /// How much of the surface it covers there: lines fade where they would run together.
+    cover: f64,
+}
+
+impl Rule {
+    /// That of lines of which there are as many, where the place changes by `steepness` from one fine pixel to the next.
+    fn new(lines: f64, steepness: f64) -> Self {
+        let half_width = 0.45 * FINE as f64;
+        let per_pixel = lines * steepness;
+        Self { lines, reach: half_width * per_pixel, cover: (1.0 / (per_pixel * 8.0 * FINE as f64)).min(1.0) }
+    }
+
+    /// How much of a grid line covers the place `at`.
+    fn cover(&self, at: f64) -> f64 {
+        let at = at * self.lines;
+        // The nearest line: places are positive.
+        let nearest = (at + 0.5) as u32;
+        if (at - f64::from(nearest)).abs() <= self.reach { self.cover } else { 0.0 }
+    }
+}
+
 /// How a membrane is painted.
 pub(super) struct Style {
     /// 0 for `u1`, 1 for `u2`.
@@ -63,53 +104,63 @@ impl Layer {
 
     /// Paints a membrane, shaded, with grid lines and the contact region.
     pub(super) fn surface(&mut self, scene: &Scene, view: &View, style: &Style) {
-        let shades = brightness(scene, view, style.membrane);
-        let in_box = |v: usize| view.in_box(scene.domain.place(v), scene.levels(v)[style.membrane]);
-        let project = |v: usize| {
-            let [x, y, nearness] = view.project(in_box(v));
-            (raster::on_grid(self.fine([x, y])), nearness)
-        };
-        let projected: Vec<([f64; 2], f64)> = (0..scene.domain.vertex_count()).map(project).collect();
-        let spacing = [0, 1].map(|k| 1.0 / (GRID * view.sides()[k]).round().max(2.0));
-        for corners in scene.domain.drawn() {
-            let flat = corners.map(|v| projected[v].0);
-            let Some(gradients) = barycentric_gradients(flat) else { continue };
-            let places = corners.map(in_box);
-            if places.iter().all(|place| place[1] < style.from) {
-                continue;
+        let corners = self.corners(scene, view, style.membrane);
+        let lines = [0, 1].map(|k| (GRID * view.sides()[k]).round().max(2.0));
+        let triangles = scene.domain.drawn();
+        let flat = |t: usize| triangles[t].map(|v| corners[v].at);
+        raster::in_bands(&mut self.texels, self.size[0], (0..triangles.len()).map(flat), |band, t| {
+            let corners = triangles[t].map(|v| &corners[v]);
+            if corners.iter().all(|corner| corner.place[1] < style.from) {
+                return;
             }
-            let gaps = corners.map(|v| scene.levels(v)[0] - scene.levels(v)[1]);
-            let nearnesses = corners.map(|v| projected[v].1);
-            let shades = corners.map(|v| f64::from(shades[v]));
-            let contacts = corners.map(|v| scene.action.in_contact(v));
-            let across = [0, 1].map(|k| places.map(|place| place[k]));
-            let steepness = [0, 1].map(|k| {
-                let slope = |axis: usize| (0..3).map(|i| gradients[i][axis] * places[i][k]).sum::<f64>();
-                let [right, down] = [slope(0), slope(1)];
-                (right * right + down * down).sqrt()
+            let Some(gradients) = barycentric_gradients(flat(t)) else { return };
+            let across = [0, 1].map(|k| corners.map(|corner| corner.place[k]));
+            let rules = [0, 1].map(|k| {
+                let slope = |axis: usize| (0..3).map(|i| gradients[i][axis] * across[k][i]).sum::<f64>();
+                Rule::new(lines[k], (slope(0) * slope(0) + slope(1) * slope(1)).sqrt())
             });
-            let size = self.size;
-            raster::triangle(flat, size, |column, row, weights| {
+            let nearnesses = corners.map(|corner| corner.nearness);
+            let shades = corners.map(|corner| corner.shade);
+            band.triangle(flat(t), |texel: &mut Texel, weights| {
                 let [a, b, c] = weights;
                 let blend = |[x, y, z]: [f64; 3]| a * x + b * y + c * z;
                 let nearness = blend(nearnesses) as f32;
-                let texel = &mut self.texels[row * size[0] + column];
                 if nearness <= texel.nearness {
                     return;
                 }
-                let at = [blend(across[0]), blend(across[1])];
+                let at = across.map(blend);
                 if at[1] < style.from {
                     return;
                 }
-                let contact = contacts[raster::nearest_corner(weights)]
-                    && (style.membrane == 1 || blend(gaps) < TOUCHING);
+                let contact = corners[raster::nearest_corner(weights)].contact
+                    && (style.membrane == 1 || blend(corners.map(|corner| corner.gap)) < TOUCHING);
                 let base = if contact { CONTACT } else { style.color };
-                let shade = blend(shades);
-                let grid = |k: usize| grid_line(at[k], spacing[k], steepness[k]);
+                let line = rules[0].cover(at[0]).max(rules[1].cover(at[1]));
                 let kind = if contact { Kind::Contact } else { Kind::Membrane };
-                *texel = Texel { nearness, color: lit(base, shade, grid(0).max(grid(1)), contact), kind };
+                *texel = Texel { nearness, color: lit(base, blend(shades), line, contact), kind };
             });
-        }
+        });
+    }
+
+    /// What a surface is blended from, at all vertices.
+    fn corners(&self, scene: &Scene, view: &View, membrane: usize) -> Vec<Corner> {
+        let in_box = |v: usize| view.in_box(scene.domain.place(v), scene.levels(v)[membrane]);
+        let places: Vec<[f64; 3]> = (0..scene.domain.vertex_count()).into_par_iter().map(in_box).collect();
+        let normals = normals(scene.domain.drawn(), &places);
+        let corner = |v: usize| {
+            let [x, y, nearness] = view.project(places[v]);
+            let [upper, lower] = scene.levels(v);
+            let [s, t, up] = normals[v];
+            Corner {
+                at: raster::on_grid(self.fine([x, y])),
+                nearness,
+                place: [places[v][0], places[v][1]],
+                shade: if up > 0.0 { view.brightness([-s / up, -t / up]) } else { 1.0 },
+                gap: upper - lower,
+                contact: scene.action.in_contact(v),
+            }
+        };
+        (0..places.len()).into_par_iter().map(corner).collect()
     }
 
     /// Draws a line of the box where no surface hides it.
@@ -197,35 +248,25 @@ fn lit(base: Rgb, shade: f64, line: f64, contact: bool) -> Rgb {
         mix(base, bright, (shade - 0.7) / 0.3 * 0.45)
     };
     let ruled = if contact { bright } else { dark };
-    mix(shaded, ruled, 0.4 * line)
+    if line > 0.0 { mix(shaded, ruled, 0.4 * line) } else { shaded }
 }
 
-/// How much of a grid line covers the place `at`: lines `spacing` apart, `steepness` of the place per pixel;
-/// fading where they would run together.
-fn grid_line(at: f64, spacing: f64, steepness: f64) -> f64 {
-    // The nearest line: places are positive.
-    let nearest = (at / spacing + 0.5) as u32;
-    let offset = (at - f64::from(nearest) * spacing).abs();
-    let pixels_apart = spacing / steepness;
-    let half_width = 0.45 * FINE as f64;
-    if offset <= half_width * steepness { (pixels_apart / (8.0 * FINE as f64)).min(1.0) } else { 0.0 }
-}
-
-/// The brightness of a membrane at each vertex, from the mean slope of the triangles around it.
-fn brightness(scene: &Scene, view: &View, membrane: usize) -> Vec<f32> {
-    let mut sums = vec![[0.0; 3]; scene.domain.vertex_count()];
-    for corners in scene.domain.drawn() {
-        let places = corners.map(|v| view.in_box(scene.domain.place(v), scene.levels(v)[membrane]));
-        let Some(gradients) = barycentric_gradients(places.map(|[s, t, _]| [s, t])) else { continue };
-        let slope = [0, 1].map(|axis| (0..3).map(|i| gradients[i][axis] * places[i][2]).sum::<f64>());
-        let [a, b, c] = places;
-        let area = ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])).abs();
-        for vertex in corners {
-            let more = [area * slope[0], area * slope[1], area];
-            (0..3).for_each(|k| sums[*vertex][k] += more[k]);
+/// The upward normals of a surface at its vertices, of no certain length: the sum of those of the triangles around each, which
+/// count with their areas.
+fn normals(triangles: &[[usize; 3]], places: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    let mut normals = vec![[0.0; 3]; places.len()];
+    for &corners in triangles {
+        let [a, b, c] = corners.map(|v| places[v]);
+        let [p, q] = [b, c].map(|d| [d[0] - a[0], d[1] - a[1], d[2] - a[2]]);
+        let normal = [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
+        // Seen from above it has no area, and does not count.
+        if normal[2] == 0.0 {
+            continue;
+        }
+        let upward = normal[2].signum();
+        for v in corners {
+            (0..3).for_each(|k| normals[v][k] += upward * normal[k]);
         }
     }
-    let shade =
-        |[s, t, area]: [f64; 3]| if area > 0.0 { view.brightness([s / area, t / area]) as f32 } else { 1.0 };
-    sums.into_iter().map(shade).collect()
+    normals
 }

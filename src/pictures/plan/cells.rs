@@ -3,6 +3,7 @@
 use super::action::Action;
 use super::cut::Cut;
 use super::domain::Domain;
+use crate::parallel::prelude::*;
 use crate::pictures::drawing::axis::Axis;
 use crate::pictures::drawing::canvas::{Bitmap, Canvas, FINE};
 use crate::pictures::drawing::color::{CONTACT, FREE, INK, PAPER, force};
@@ -16,13 +17,13 @@ pub(crate) const MOST_ELONGATED: f64 = 8.0;
 const OUTLINE: f64 = 2.5;
 
 /// No dual cell: the pixel lies outside of the domain.
-const OUTSIDE: usize = usize::MAX;
+const OUTSIDE: u32 = u32::MAX;
 
 /// The vertex whose dual cell covers each fine pixel of a frame.
 pub(crate) struct Cells {
     pub(crate) frame: Frame,
     size: [usize; 2],
-    vertex: Vec<usize>,
+    vertex: Vec<u32>,
 }
 
 impl Cells {
@@ -41,22 +42,26 @@ impl Cells {
             [x * size[0] as f64, (1.0 - y) * size[1] as f64]
         };
         let mut vertex = vec![OUTSIDE; size[0] * size[1]];
-        for corners in domain.drawn() {
-            raster::triangle(corners.map(|v| raster::on_grid(at(v))), size, |column, row, weights| {
-                vertex[row * size[0] + column] = corners[raster::nearest_corner(weights)];
+        let on_grid: Vec<[f64; 2]> =
+            (0..domain.vertex_count()).into_par_iter().map(|v| raster::on_grid(at(v))).collect();
+        let corners = |t: usize| domain.drawn()[t].map(|v| on_grid[v]);
+        raster::in_bands(&mut vertex, size[0], (0..domain.drawn().len()).map(corners), |band, t| {
+            let vertices = domain.drawn()[t];
+            band.triangle(corners(t), |pixel, weights| {
+                *pixel = vertices[raster::nearest_corner(weights)] as u32;
             });
-        }
+        });
         let pixel = |v: usize| {
             let [column, row] = at(v).map(|at| at.max(0.0) as usize);
             row.min(size[1] - 1) * size[0] + column.min(size[0] - 1)
         };
         // Of triangles larger than those that there are not all vertices have been asked.
         if domain.is_simplified() {
-            domain.used().iter().for_each(|&v| vertex[pixel(v)] = v);
+            domain.used().iter().for_each(|&v| vertex[pixel(v)] = v as u32);
         }
         // A dual cell in contact may be smaller than a pixel: its vertex is shown in any case.
         for &v in domain.triangles().iter().flatten().filter(|&&v| marked(v)) {
-            vertex[pixel(v)] = v;
+            vertex[pixel(v)] = v as u32;
         }
         Cells { frame, size, vertex }
     }
@@ -66,7 +71,7 @@ impl Cells {
     pub(crate) fn profile(&self, axis: usize, wanted: impl Fn(usize) -> bool) -> Vec<usize> {
         let mut counts = vec![0; self.size[axis]];
         for (pixel, &vertex) in self.vertex.iter().enumerate() {
-            if vertex != OUTSIDE && wanted(vertex) {
+            if vertex != OUTSIDE && wanted(vertex as usize) {
                 let from_low = [pixel % self.size[0], self.size[1] - 1 - pixel / self.size[0]];
                 counts[from_low[axis]] += 1;
             }
@@ -86,14 +91,17 @@ impl Cells {
     }
 
     fn paint(&self, canvas: &mut Canvas, color: impl Fn(usize) -> [u8; 3]) {
-        let covering = |&vertex: &usize| {
+        let covering = |vertex: u32| {
             if vertex == OUTSIDE {
                 return [0; 4];
             }
-            let [red, green, blue] = color(vertex);
+            let [red, green, blue] = color(vertex as usize);
             [red, green, blue, 255]
         };
-        let pixels = self.vertex.iter().map(covering).collect();
+        let mut pixels = Vec::with_capacity(self.vertex.len());
+        for cell in self.vertex.chunk_by(|a, b| a == b) {
+            pixels.resize(pixels.len() + cell.len(), covering(cell[0]));
+        }
         let corner = [self.frame.left, self.frame.top].map(|x| x as usize);
         canvas.bitmap(corner, Bitmap { size: self.size, pixels });
     }
@@ -103,7 +111,7 @@ impl Cells {
         let [columns, rows] = self.size;
         let touches = |column: usize, row: usize| {
             let vertex = self.vertex[row * columns + column];
-            vertex != OUTSIDE && in_contact(vertex)
+            vertex != OUTSIDE && in_contact(vertex as usize)
         };
         for row in 0..rows {
             for column in (0..columns).filter(|&column| touches(column, row)) {

@@ -1,6 +1,6 @@
 //! Pixels: everything is painted on a fine grid, and averaged down.
 
-use png::{BitDepth, ColorType, Encoder, EncodingError};
+use png::{BitDepth, ColorType, Compression, DeflateCompression, Encoder, EncodingError, Filter};
 
 use crate::parallel::prelude::*;
 use crate::pictures::drawing::canvas::{Bitmap, Canvas, FINE, Shape};
@@ -19,19 +19,31 @@ pub(super) fn encode(canvas: &Canvas) -> Result<Vec<u8>, EncodingError> {
         let rows = bytes.len() / (3 * width);
         Pixels::of(canvas, FINE * BAND * band, FINE * rows).average(bytes);
     });
-    compressed([width, height], ColorType::Rgb, &bytes)
+    compressed([width, height], ColorType::Rgb, &bytes, |encoder| {
+        // A third of the time of the usual effort, for a file that is a tenth larger.
+        encoder.set_filter(Filter::Up);
+        encoder.set_deflate_compression(DeflateCompression::Level(2));
+    })
 }
 
 /// A bitmap as PNG (RGBA, 8 bits), pixel by pixel.
 pub(super) fn encode_bitmap(bitmap: &Bitmap) -> Result<Vec<u8>, EncodingError> {
-    compressed(bitmap.size, ColorType::Rgba, bitmap.pixels.as_flattened())
+    compressed(bitmap.size, ColorType::Rgba, bitmap.pixels.as_flattened(), |encoder| {
+        encoder.set_compression(Compression::Balanced);
+    })
 }
 
-fn compressed(size: [usize; 2], color: ColorType, data: &[u8]) -> Result<Vec<u8>, EncodingError> {
+fn compressed(
+    size: [usize; 2],
+    color: ColorType,
+    data: &[u8],
+    effort: impl FnOnce(&mut Encoder<&mut Vec<u8>>),
+) -> Result<Vec<u8>, EncodingError> {
     let mut bytes = Vec::new();
     let mut encoder = Encoder::new(&mut bytes, size[0] as u32, size[1] as u32);
     encoder.set_color(color);
     encoder.set_depth(BitDepth::Eight);
+    effort(&mut encoder);
     let mut writer = encoder.write_header()?;
     writer.write_image_data(data)?;
     writer.finish()?;
