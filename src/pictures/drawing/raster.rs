@@ -17,6 +17,9 @@ const ON_EDGE: f64 = -1e-9;
 /// By how much of a pixel the ends of a span may be rounded: which pixels of it are covered is asked of each.
 const SLACK: f64 = 1e-6;
 
+/// Of so few pixels all are asked: that takes less time than to find the ends of the span.
+const SHORT: usize = 8;
+
 /// Calls `paint(column, row, barycentric coordinates)` for each pixel of a grid of `size` columns and rows
 /// whose centre lies in the triangle. A triangle without area has no pixels.
 pub(crate) fn triangle(
@@ -25,15 +28,16 @@ pub(crate) fn triangle(
     mut paint: impl FnMut(usize, usize, [f64; 3]),
 ) {
     let bounds = [0, 1].map(|axis| extent(corners.map(|p| p[axis])));
+    let ranges = [0, 1].map(|axis| pixel_range(bounds[axis], size[axis]));
     // Most triangles of a fine mesh have no pixel.
-    if [1, 0].into_iter().any(|axis| pixel_range(bounds[axis], size[axis]).is_empty()) {
+    if ranges.iter().any(Range::is_empty) {
         return;
     }
     let Some(gradients) = barycentric_gradients(corners) else { return };
     let [along, across] = directions(bounds);
+    let is_short = ranges[along].len() <= SHORT;
     let slopes = gradients.map(|gradient| gradient[along]);
-    let lengths = slopes.map(|slope| 1.0 / slope);
-    for line in pixel_range(bounds[across], size[across]) {
+    for line in ranges[across].clone() {
         let middle = line as f64 + 0.5;
         // On the line each weight is linear, and its zero an end of the span.
         let start = |k: usize| {
@@ -41,16 +45,19 @@ pub(crate) fn triangle(
             gradients[k][across] * (middle - from[across]) - slopes[k] * from[along]
         };
         let starts = [start(0), start(1), start(2)];
-        let mut span = bounds[along];
-        for k in 0..3 {
-            let zero = (ON_EDGE - starts[k]) * lengths[k];
-            if slopes[k] > 0.0 {
-                span[0] = span[0].max(zero - SLACK);
-            } else if slopes[k] < 0.0 {
-                span[1] = span[1].min(zero + SLACK);
+        let narrowed = || {
+            let mut span = bounds[along];
+            for k in 0..3 {
+                let zero = (ON_EDGE - starts[k]) / slopes[k];
+                if slopes[k] > 0.0 {
+                    span[0] = span[0].max(zero - SLACK);
+                } else if slopes[k] < 0.0 {
+                    span[1] = span[1].min(zero + SLACK);
+                }
             }
-        }
-        for pixel in pixel_range(span, size[along]) {
+            pixel_range(span, size[along])
+        };
+        for pixel in if is_short { ranges[along].clone() } else { narrowed() } {
             let weight = |k: usize| starts[k] + slopes[k] * (pixel as f64 + 0.5);
             let weights = [weight(0), weight(1), weight(2)];
             visited();
@@ -72,6 +79,9 @@ pub(crate) fn line(
     let vector = [to[0] - from[0], to[1] - from[1]];
     let square = vector[0] * vector[0] + vector[1] * vector[1];
     let bounds = [0, 1].map(|axis| grown(extent([from[axis], to[axis]]), radius));
+    if pixel_range(bounds[1], size[1]).is_empty() {
+        return;
+    }
     let [along, across] = directions(bounds);
     for line in pixel_range(bounds[across], size[across]) {
         let middle = line as f64 + 0.5;
