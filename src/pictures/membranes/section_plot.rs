@@ -104,17 +104,18 @@ impl<'a> SectionPlot<'a> {
         const STEEPNESS_COUNTS: f64 = 0.25;
         let samples = &self.section.samples;
         let window = ((width * samples.len() as f64) as usize).clamp(1, samples.len());
-        // A wider gap makes the name no clearer.
+        // A wider gap makes the name no clearer; outside of the domain there is none.
         let enough = self.height.length() / 7.0;
+        let gap =
+            |s: &Option<Sample>| s.map_or(f64::NEG_INFINITY, |s| s.heights[0] - s.heights[1]).min(enough);
+        let height = |s: &Option<Sample>| s.map_or(0.0, |s| s.heights[membrane]);
+        let gaps = least(samples.iter().map(gap).collect(), window);
+        let lows = least(samples.iter().map(height).collect(), window);
+        let depths = least(samples.iter().map(|s| -height(s)).collect(), window);
         let mut best: Option<(f64, [f64; 2])> = None;
-        for start in (0..=samples.len() - window).step_by(FINE) {
-            let stretch: Option<Vec<Sample>> = samples[start..start + window].iter().copied().collect();
-            let Some(stretch) = stretch else { continue };
-            let heights = stretch.iter().map(|sample| sample.heights[membrane]);
-            let low = heights.clone().fold(f64::INFINITY, f64::min);
-            let high = heights.fold(f64::NEG_INFINITY, f64::max);
-            let gap = stretch.iter().map(|s| s.heights[0] - s.heights[1]).fold(enough, f64::min);
-            let merit = gap - STEEPNESS_COUNTS * (high - low);
+        for start in (0..gaps.len()).step_by(FINE).filter(|&start| gaps[start] > f64::NEG_INFINITY) {
+            let [low, high] = [lows[start], -depths[start]];
+            let merit = gaps[start] - STEEPNESS_COUNTS * (high - low);
             if best.is_none_or(|(most, _)| merit > most) {
                 let middle = self.section.along(start + window / 2);
                 best = Some((merit, [middle, if membrane == 0 { high } else { low }]));
@@ -151,5 +152,31 @@ impl<'a> SectionPlot<'a> {
             scale(above.height, &self.height) / scale(above.width, &self.scene.domain.plane[cut.along]);
         let title = format!("Section A–A: {other} = {place}, heights {}", times(heights));
         canvas.text(&title, [above.left, above.top - 52.0], NORMAL, INK, Anchor::Left);
+    }
+}
+
+/// The least of each `window` neighbours, from the first of them on: from those of windows half as wide, which may overlap.
+fn least(mut values: Vec<f64>, window: usize) -> Vec<f64> {
+    let mut of = 1;
+    while of < window {
+        let shift = of.min(window - of);
+        values = values.iter().zip(&values[shift..]).map(|(a, b)| a.min(*b)).collect();
+        of += shift;
+    }
+    values
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_least_of_each_window_is_that_of_all_in_it() {
+        let values: Vec<f64> = (0..50).map(|k| f64::from(k * k * 7919 % 101)).collect();
+        for window in [1, 2, 3, 7, 8, 21, 49, 50] {
+            let smallest = |window: &[f64]| window.iter().copied().fold(f64::INFINITY, f64::min);
+            let expected: Vec<f64> = values.windows(window).map(smallest).collect();
+            assert_eq!(least(values.clone(), window), expected, "{window}");
+        }
     }
 }
