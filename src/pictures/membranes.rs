@@ -20,6 +20,7 @@ use super::drawing::encode::Drawing;
 use super::drawing::frame::Frame;
 use super::drawing::heading::heading;
 use super::plan::Cut;
+use crate::parallel::join;
 use map::Map;
 use scene::Scene;
 use section::{Section, cut_through};
@@ -40,11 +41,21 @@ pub fn render(picture: &Picture) -> Result<Drawing, PictureError> {
     let map = Map::new(&scene, MAP);
     let cut = cut(&scene, &map);
     let section = Section::new(&scene, cut, MEMBRANES.width as usize * FINE);
-    let mut canvas = Canvas::new(SIZE);
-    heading(&mut canvas, picture.title);
-    surfaces::draw(&mut canvas, &scene, &section, VIEW);
-    map.draw(&mut canvas, &scene, &cut);
-    SectionPlot::new(&scene, &section, [MEMBRANES, FORCE]).draw(&mut canvas);
+    let on_canvas = |draw: &dyn Fn(&mut Canvas)| {
+        let mut canvas = Canvas::new(SIZE);
+        draw(&mut canvas);
+        canvas
+    };
+    let view = |canvas: &mut Canvas| {
+        heading(canvas, picture.title);
+        surfaces::draw(canvas, &scene, &section, VIEW);
+    };
+    let plans = |canvas: &mut Canvas| {
+        map.draw(canvas, &scene, &cut);
+        SectionPlot::new(&scene, &section, [MEMBRANES, FORCE]).draw(canvas);
+    };
+    let (mut canvas, plans) = join(|| on_canvas(&view), || on_canvas(&plans));
+    canvas.lay(plans);
     Ok(Drawing::new(canvas))
 }
 

@@ -110,6 +110,11 @@ impl Canvas {
         self.shapes.push(Shape::Bitmap { corner, bitmap });
     }
 
+    /// Puts what lies on another canvas of the same size on top of this one.
+    pub(crate) fn lay(&mut self, over: Canvas) {
+        self.shapes.extend(over.shapes);
+    }
+
     /// Puts another canvas onto this one, its upper left corner to the pixel `corner`; it must fit.
     pub(crate) fn paste(&mut self, canvas: Canvas, corner: [usize; 2]) {
         self.shapes.push(Shape::Window { corner, canvas: Box::new(canvas) });
