@@ -106,6 +106,7 @@ impl Layer {
     pub(super) fn surface(&mut self, scene: &Scene, view: &View, style: &Style) {
         let corners = self.corners(scene, view, style.membrane);
         let lines = [0, 1].map(|k| (GRID * view.sides()[k]).round().max(2.0));
+        let [apart, in_contact] = [Lit::membrane(style.color), Lit::contact()];
         let triangles = scene.domain.drawn();
         let flat = |t: usize| triangles[t].map(|v| corners[v].at);
         raster::in_bands(&mut self.texels, self.size[0], (0..triangles.len()).map(flat), |band, t| {
@@ -134,10 +135,10 @@ impl Layer {
                 }
                 let contact = corners[raster::nearest_corner(weights)].contact
                     && (style.membrane == 1 || blend(corners.map(|corner| corner.gap)) < TOUCHING);
-                let base = if contact { CONTACT } else { style.color };
                 let line = rules[0].cover(at[0]).max(rules[1].cover(at[1]));
-                let kind = if contact { Kind::Contact } else { Kind::Membrane };
-                *texel = Texel { nearness, color: lit(base, blend(shades), line, contact), kind };
+                let (kind, lit) =
+                    if contact { (Kind::Contact, &in_contact) } else { (Kind::Membrane, &apart) };
+                *texel = Texel { nearness, color: lit.color(blend(shades), line), kind };
             });
         });
     }
@@ -179,22 +180,29 @@ impl Layer {
 
     /// The layer over another one, where that does not hide it: `share` of the membrane, contact and lines in full.
     pub(super) fn over(&self, behind: &Layer, share: f64) -> Bitmap {
-        let look = |(texel, behind): (&Texel, &Texel)| {
+        let look = |texel: &Texel, behind: &Texel| {
             let [red, green, blue] = behind.color;
             let hidden = texel.kind == Kind::Nothing || behind.nearness > texel.nearness + NEARER;
-            match (hidden, behind.kind) {
-                (true, Kind::Nothing) => [0; 4],
-                (true, _) => [red, green, blue, 255],
-                (false, below) => {
-                    let share = if texel.kind == Kind::Membrane { share } else { 1.0 };
-                    let seen = below != Kind::Nothing && share < 1.0;
-                    let color = if seen { mix(behind.color, texel.color, share) } else { texel.color };
-                    let cover = if seen { 255 } else { (255.0 * share).round() as u8 };
-                    [color[0], color[1], color[2], cover]
+            if hidden {
+                return [red, green, blue, 255];
+            }
+            let share = if texel.kind == Kind::Membrane { share } else { 1.0 };
+            let seen = behind.kind != Kind::Nothing && share < 1.0;
+            let color = if seen { mix(behind.color, texel.color, share) } else { texel.color };
+            let cover = if seen { 255 } else { (255.0 * share).round() as u8 };
+            [color[0], color[1], color[2], cover]
+        };
+        let mut pixels = vec![[0; 4]; self.texels.len()];
+        let rows = pixels.par_chunks_mut(self.size[0]).zip(self.texels.par_chunks(self.size[0]));
+        rows.zip(behind.texels.par_chunks(self.size[0])).for_each(|((pixels, texels), behind)| {
+            for ((pixel, texel), behind) in pixels.iter_mut().zip(texels).zip(behind) {
+                // Most of the frame shows nothing, and its memory is not even touched.
+                if [texel.kind, behind.kind] != [Kind::Nothing; 2] {
+                    *pixel = look(texel, behind);
                 }
             }
-        };
-        Bitmap { size: self.size, pixels: self.texels.par_iter().zip(&behind.texels).map(look).collect() }
+        });
+        Bitmap { size: self.size, pixels }
     }
 
     /// The point of the canvas nearest to `label` that shows `kind` and, if possible, has it all around.
@@ -238,17 +246,42 @@ impl Layer {
     }
 }
 
-/// Light and the grid lines on the colour of a surface.
-fn lit(base: Rgb, shade: f64, line: f64, contact: bool) -> Rgb {
-    let (dark, bright) =
-        if contact { ([20, 20, 24], [150, 150, 160]) } else { ([40, 30, 20], [255, 255, 255]) };
-    let shaded = if shade < 0.7 {
-        mix(dark, base, 0.45 + 0.55 * shade / 0.7)
-    } else {
-        mix(base, bright, (shade - 0.7) / 0.3 * 0.45)
-    };
-    let ruled = if contact { bright } else { dark };
-    if line > 0.0 { mix(shaded, ruled, 0.4 * line) } else { shaded }
+/// The colours of a surface in the light, or of the contact region on it.
+struct Lit {
+    /// From no light to the brightest.
+    colors: [Rgb; Lit::LEVELS],
+    /// Of the grid lines.
+    ruled: Rgb,
+}
+
+impl Lit {
+    /// So many that neighbours differ by no more than one level of a channel.
+    const LEVELS: usize = 512;
+
+    fn new(base: Rgb, [dark, bright]: [Rgb; 2], ruled: Rgb) -> Self {
+        let color = |level: usize| match level as f64 / (Self::LEVELS - 1) as f64 {
+            shade if shade < 0.7 => mix(dark, base, 0.45 + 0.55 * shade / 0.7),
+            shade => mix(base, bright, (shade - 0.7) / 0.3 * 0.45),
+        };
+        Self { colors: std::array::from_fn(color), ruled }
+    }
+
+    /// Outside of the contact region.
+    fn membrane(base: Rgb) -> Self {
+        let dark = [40, 30, 20];
+        Self::new(base, [dark, [255, 255, 255]], dark)
+    }
+
+    fn contact() -> Self {
+        let bright = [150, 150, 160];
+        Self::new(CONTACT, [[20, 20, 24], bright], bright)
+    }
+
+    /// At a brightness from 0 to 1, under a grid line that covers so much of it.
+    fn color(&self, shade: f64, line: f64) -> Rgb {
+        let color = self.colors[((shade * (Self::LEVELS - 1) as f64 + 0.5) as usize).min(Self::LEVELS - 1)];
+        if line > 0.0 { mix(color, self.ruled, 0.4 * line) } else { color }
+    }
 }
 
 /// The upward normals of a surface at its vertices, of no certain length: the sum of those of the triangles around each, which
