@@ -155,19 +155,21 @@ impl Pixels {
 
     /// Writes the mean colour of the fine pixels of each pixel, row by row.
     fn average(&self, bytes: &mut [u8]) {
-        let count = (FINE * FINE) as u32;
+        let count = (FINE * FINE) as u16;
         let width = self.size[0] / FINE;
-        for (row, bytes) in bytes.chunks_exact_mut(3 * width).enumerate() {
-            for (column, mean) in bytes.chunks_exact_mut(3).enumerate() {
-                let mut sum = [0u32; 3];
-                for fine_row in FINE * row..FINE * (row + 1) {
-                    let start = fine_row * self.size[0] + FINE * column;
-                    for pixel in &self.pixels[start..start + FINE] {
-                        let [red, green, blue] = pixel.map(u32::from);
-                        sum = [sum[0] + red, sum[1] + green, sum[2] + blue];
-                    }
+        let mut sums = vec![0; 3 * self.size[0]];
+        let rows = self.pixels.chunks_exact(FINE * self.size[0]);
+        for (rows, bytes) in rows.zip(bytes.chunks_exact_mut(3 * width)) {
+            sums.fill(0u16);
+            for row in rows.chunks_exact(self.size[0]) {
+                for (sum, &channel) in sums.iter_mut().zip(row.as_flattened()) {
+                    *sum += u16::from(channel);
                 }
-                mean.copy_from_slice(&sum.map(|total| ((total + count / 2) / count) as u8));
+            }
+            let (sums, means) = (sums.as_chunks::<{ 3 * FINE }>().0, bytes.as_chunks_mut::<3>().0);
+            for (sums, mean) in sums.iter().zip(means) {
+                let total = |channel: usize| (0..FINE).map(|k| sums[3 * k + channel]).sum::<u16>();
+                *mean = [0, 1, 2].map(|channel| ((total(channel) + count / 2) / count) as u8);
             }
         }
     }
