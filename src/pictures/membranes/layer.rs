@@ -303,3 +303,22 @@ fn normals(triangles: &[[usize; 3]], places: &[[f64; 3]]) -> Vec<[f64; 3]> {
     }
     normals
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pictures::drawing::color::{LOWER, UPPER};
+
+    #[test]
+    fn light_has_no_visible_steps_and_all_brightnesses_a_color() {
+        for lit in [Lit::membrane(UPPER), Lit::membrane(LOWER), Lit::contact()] {
+            let step = |pair: &[Rgb]| (0..3).map(|k| pair[0][k].abs_diff(pair[1][k])).max().unwrap();
+            assert!(lit.colors.windows(2).all(|pair| step(pair) <= 1));
+            let [dark, bright] = [0.0, 1.0].map(|shade| lit.color(shade, 0.0));
+            assert!((0..3).all(|k| dark[k] < bright[k]), "{dark:?} {bright:?}");
+            // Rounding may take a blend of brightnesses beyond the ends.
+            assert_eq!([-1e-9, 1.0 + 1e-9].map(|shade| lit.color(shade, 0.0)), [dark, bright]);
+            assert_ne!(lit.color(0.5, 1.0), lit.color(0.5, 0.0));
+        }
+    }
+}

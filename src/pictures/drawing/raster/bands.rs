@@ -55,11 +55,11 @@ mod tests {
         let size = [90.0, 2.0 * BAND as f64 + 30.0];
         let at = |k: usize| {
             let [x, y] = size.map(|length| (k * k * 7919 % 2503) as f64 / 2400.0 * length - 3.0);
-            if k % 2 == 0 { [x.round(), y.round()] } else { [x, (y * 1.7) % size[1]] }
+            if k.is_multiple_of(2) { [x.round(), y.round()] } else { [x, (y * 1.7) % size[1]] }
         };
-        (0..60)
+        (0..60usize)
             .map(|t| {
-                if t % 3 == 0 {
+                if t.is_multiple_of(3) {
                     [at(t), at(t + 1), at(t + 2)]
                 } else {
                     [at(t), at(t).map(|x| x + 9.0), at(t + 1)]
