@@ -1,4 +1,4 @@
-//! One half of the decoupled problem on patches: the method of [`half`](crate::multigrid::half), where the finest levels are lattices.
+//! One half of the decoupled problem on patches: the method of [`half`], where the finest levels are lattices.
 //!
 //! A matrix that has been assembled differs from the stencils by the rounding of the vertices. What decides is the assembled one: if its
 //! residual is not within the tolerance yet, what it differs by is put on the side of the load, and the cycles go on.
