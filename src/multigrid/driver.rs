@@ -17,6 +17,33 @@ pub(super) trait Cycle {
     fn has_changed(&self) -> bool;
 }
 
+/// Two energies that differ by less than this fraction may do so by the rounding of their sums.
+const ENERGY_ROUNDING: f64 = 1e-12;
+
+/// A method whose corrections can raise the energy where the obstacle has cut them off.
+pub(super) trait Damped {
+    /// The next iterate, by the correction or without it; the one before is kept.
+    fn relax(&mut self, is_corrected: bool) -> Found;
+
+    /// By how much the energy is larger than that of the iterate before, as exactly as the step is known.
+    fn energy_change(&self) -> f64;
+
+    /// Goes back to the iterate before, and adds the part of the correction that lowers the energy most.
+    fn damp(&mut self);
+
+    /// Adds the correction and relaxes; damps it where that has not lowered the energy.
+    fn correct(&mut self, energy: f64) -> Found {
+        let found = self.relax(true);
+        // Energies are equal to rounding long before the answer is reached.
+        let falls = || found.energy < energy - ENERGY_ROUNDING * energy.abs() || self.energy_change() <= 0.0;
+        if found.cut == 0 || falls() {
+            return found;
+        }
+        self.damp();
+        self.relax(false)
+    }
+}
+
 /// Until the weighted residual is within the tolerance and the contact set stays. `most` is the number of cycles within which the
 /// pace has to lead there. Returns what has been found after each cycle, and `first` before all.
 pub(super) fn run(

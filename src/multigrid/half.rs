@@ -7,7 +7,7 @@
 //! of a step of the active set method.
 
 use super::correction::CoarseLevels;
-use super::driver::{self, Cycle};
+use super::driver::{self, Cycle, Damped};
 use super::sweep::{Bounded, Found, Iterate};
 use crate::multigrid::cholesky::NotFactored;
 use crate::multigrid::hierarchy::Hierarchy;
@@ -18,9 +18,6 @@ pub(crate) const MAX_CYCLES: usize = 200;
 
 /// Cycles on a coarser level: its error is then well below that of its discretisation.
 pub(super) const COARSE_CYCLES: usize = 2;
-
-/// Two energies that differ by less than this fraction may do so by the rounding of their sums.
-pub(super) const ENERGY_ROUNDING: f64 = 1e-12;
 
 /// `K x - y = b`, `x >= lower`, `y >= 0`, `y'(x - lower) = 0` at the vertices that are not held. Vectors are over the rows of
 /// the finest level.
@@ -136,31 +133,10 @@ impl<'c, 'h> Cycles<'c, 'h> {
         let energies = history.iter().map(|found| found.energy).collect();
         Ok(HalfSolution { x: self.x, y, cycles: vec![history.len() - 1], status, energies })
     }
+}
 
-    /// Adds the correction and relaxes; damps it where that has not lowered the energy.
-    fn correct(&mut self, energy: f64) -> Found {
-        let found = self.relax(true);
-        if found.cut == 0 || self.falls(energy, found.energy) {
-            return found;
-        }
-        std::mem::swap(&mut self.x, &mut self.last);
-        for i in self.changed.drain(..) {
-            self.frozen[i as usize] ^= true;
-        }
-        let correction = self.coarse.correction(self.finest);
-        self.bounded.line_search(&mut self.x, correction, &self.frozen, &mut self.last);
-        self.relax(false)
-    }
-
-    /// Whether the energy has fallen in the last step, from one to the other: that tells long before the answer is reached
-    /// no more than rounding.
-    fn falls(&self, before: f64, after: f64) -> bool {
-        after < before - ENERGY_ROUNDING * before.abs()
-            || self.bounded.energy_change(&self.last, &self.x) <= 0.0
-    }
-
-    /// The next iterate; the one before is kept.
-    fn relax(&mut self, corrected: bool) -> Found {
+impl Damped for Cycles<'_, '_> {
+    fn relax(&mut self, is_corrected: bool) -> Found {
         std::mem::swap(&mut self.x, &mut self.last);
         let (correction, functional) = self.coarse.exchange(self.finest);
         let iterate = Iterate {
@@ -169,7 +145,20 @@ impl<'c, 'h> Cycles<'c, 'h> {
             changed: &mut self.changed,
             coarse: functional,
         };
-        self.bounded.correct_and_relax(&self.last, corrected.then_some(correction), iterate)
+        self.bounded.correct_and_relax(&self.last, is_corrected.then_some(correction), iterate)
+    }
+
+    fn energy_change(&self) -> f64 {
+        self.bounded.energy_change(&self.last, &self.x)
+    }
+
+    fn damp(&mut self) {
+        std::mem::swap(&mut self.x, &mut self.last);
+        for i in self.changed.drain(..) {
+            self.frozen[i as usize] ^= true;
+        }
+        let correction = self.coarse.correction(self.finest);
+        self.bounded.line_search(&mut self.x, correction, &self.frozen, &mut self.last);
     }
 }
 

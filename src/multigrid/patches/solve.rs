@@ -13,8 +13,8 @@ use super::matrix::Matrix;
 use super::transfer::{prolong_inside, prolong_interface, restrict_inside, restrict_interface};
 use crate::fem::{StiffnessMatrix, row_of};
 use crate::multigrid::cholesky::NotFactored;
-use crate::multigrid::driver::{self, Cycle};
-use crate::multigrid::half::{self, COARSE_CYCLES, ENERGY_ROUNDING, HalfProblem, HalfSolution, MAX_CYCLES};
+use crate::multigrid::driver::{self, Cycle, Damped};
+use crate::multigrid::half::{self, COARSE_CYCLES, HalfProblem, HalfSolution, MAX_CYCLES};
 use crate::multigrid::sweep::{Found, ROUNDING, larger};
 use crate::parallel::BLOCK;
 use crate::parallel::prelude::*;
@@ -286,40 +286,27 @@ impl Cycles<'_, '_> {
         let (status, history) = driver::run(&mut self, first, tolerance, MAX_CYCLES, limits)?;
         Ok(Cycled { x: self.iterate.x, status, history })
     }
+}
 
-    /// Adds the correction and relaxes; damps it where that has not lowered the energy.
-    fn correct(&mut self, energy: f64) -> Found {
-        let found = self.relax(true);
-        if found.cut == 0 || self.falls(energy, found.energy) {
-            return found;
-        }
-        std::mem::swap(&mut self.iterate, &mut self.last);
-        self.problem.line_search(&mut self.iterate, &mut self.coarser.below(self.finest));
-        self.relax(false)
-    }
-
-    /// Whether the energy has fallen in the last step, from one to the other: that tells long before the answer is reached no
-    /// more than rounding.
-    fn falls(&self, before: f64, after: f64) -> bool {
-        after < before - ENERGY_ROUNDING * before.abs()
-            || self.problem.energy_change(&self.last.x, &self.iterate.x) <= 0.0
-    }
-
-    /// The next iterate; the one before is kept.
+impl Damped for Cycles<'_, '_> {
     fn relax(&mut self, is_corrected: bool) -> Found {
         std::mem::swap(&mut self.iterate, &mut self.last);
-        let below = &mut self.coarser.below(self.finest);
-        let found = self.problem.correct_and_relax(
-            &self.last,
-            is_corrected,
-            &mut self.iterate,
-            below,
-            &mut self.inflow,
-        );
-        if self.problem.is_bounded {
-            self.changed = self.iterate.frozen.changed_groups(self.problem.grid, &self.last.frozen);
+        let Self { problem, coarser, iterate, last, inflow, .. } = self;
+        let below = &mut coarser.below(self.finest);
+        let found = problem.correct_and_relax(last, is_corrected, iterate, below, inflow);
+        if problem.is_bounded {
+            self.changed = iterate.frozen.changed_groups(problem.grid, &last.frozen);
         }
         found
+    }
+
+    fn energy_change(&self) -> f64 {
+        self.problem.energy_change(&self.last.x, &self.iterate.x)
+    }
+
+    fn damp(&mut self) {
+        std::mem::swap(&mut self.iterate, &mut self.last);
+        self.problem.line_search(&mut self.iterate, &mut self.coarser.below(self.finest));
     }
 }
 

@@ -180,7 +180,7 @@ fn truncated_matrices_have_the_energies_of_truncated_functions() {
     }
 }
 
-/// A correction `c` has `1/2 c'A c < b'c`, on truncated levels, too; and is most of what is missing on smooth functions.
+/// A correction `c` has `1/2 c'A c < b'c`, on truncated levels, too.
 #[test]
 fn corrections_lower_the_energy() {
     for mesh in meshes() {

@@ -96,7 +96,7 @@ impl Lattice {
         (i + j <= self.segments).then_some([i, j])
     }
 
-    /// The point of a side in a direction that is so many segments away from where the side starts, and the piece of the side behind it.
+    /// The point of a side that is so many segments away from where the side starts.
     pub(in crate::multigrid) fn along_side(&self, side: usize, t: usize) -> usize {
         match side {
             0 => self.at(t, 0),

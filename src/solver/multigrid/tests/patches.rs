@@ -121,6 +121,19 @@ fn patches_start_and_stop_where_they_are_told() {
     assert!(on_patches(&d, &again).statistics.iterations <= 1);
 }
 
+#[test]
+fn patches_do_not_depend_on_the_number_of_threads() {
+    let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [192, 128], Pattern::Right).unwrap();
+    let d = PairDiscretization::new(&problem([1.0, 2.0], 0.05), mesh).unwrap();
+    let [one, three] = [1, 3].map(|threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| on_patches(&d, &options()))
+    });
+    assert_eq!(one.displacement, three.displacement);
+    assert_eq!(one.multiplier, three.multiplier);
+    assert_eq!(one.statistics.energies, three.statistics.energies);
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 

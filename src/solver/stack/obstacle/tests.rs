@@ -131,6 +131,33 @@ fn it_finds_what_the_active_set_method_finds() {
     }
 }
 
+/// One tension on patches; free sides, where the rows of the interface are those of fewer triangles; no patches with a foundation.
+#[test]
+fn patches_find_what_the_active_set_method_finds() {
+    let mesh = with_sides(square(64));
+    let sheet = || Membrane::new(2.0).load(load());
+    let sheets = [
+        ("fixed", sheet().height(0.02), true),
+        ("free sides", sheet().free().height_on("west", 0.1).height_on("east", 0.05), true),
+        ("line load", sheet().free().height_on("west", 0.1).traction_on("east", -3.0), true),
+        ("foundation", sheet().height(0.02).foundation(3.0), false),
+    ];
+    for (name, sheet, has_patches) in sheets {
+        let d = posed(&ContactProblem::obstacle(sheet, wavy()).unwrap(), &mesh);
+        let is_free: Vec<bool> = (0..mesh.points().len()).map(|a| d.unknown(1, a).is_some()).collect();
+        let levels = MembraneLevels::new(&mesh, Cow::Owned(d.matrix(1)), &is_free);
+        assert_eq!(matches!(levels, MembraneLevels::Patches(..)), has_patches, "{name}");
+        let candidate = solve_on(&levels, &d, "multigrid", &options(), Instant::now()).unwrap();
+        let cycles = candidate.statistics.iterations;
+        assert!(cycles <= SINGULAR_CYCLES, "{name}: {cycles}");
+        let [found, exact] =
+            [certify_stack(&d, candidate, TOLERANCE).unwrap(), certified(&d, &mut ActiveSet)];
+        assert!(found.gaps()[0].contact == exact.gaps()[0].contact, "{name}");
+        let [u, lambda] = distances(&d, &found, &exact);
+        assert!(u < AGREEMENT && lambda < 2.0 * AGREEMENT, "{name}: {u:e}, {lambda:e}");
+    }
+}
+
 /// Another problem's solution is not that of this one.
 #[test]
 fn a_disagreement_is_seen() {
