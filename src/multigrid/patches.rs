@@ -39,6 +39,9 @@ const STORED: usize = 3;
 /// Refinements of the patches at most. Then two vectors over a group are half a megabyte, and stay in the cache of a core.
 const MOST: usize = 6;
 
+/// And at least: with 16 segments to a side, stored rows are as fast.
+const FEWEST_REFINEMENTS: usize = 5;
+
 /// Fewer patches are cut up once more: they would leave lanes empty.
 const FEWEST_PATCHES: usize = 4 * LANES;
 
@@ -65,14 +68,20 @@ impl Patches {
     /// Finds them in a mesh, for a matrix over its vertices, those with an unknown being `free`; `None` where it has none, or few, or
     /// they have no common stencil: where the tension changes inside a patch, or vertices have been moved to a curve.
     pub(crate) fn new(mesh: &Mesh, k: &StiffnessMatrix, free: &[bool]) -> Option<Self> {
-        Self::at_least(FEWEST_PATCHES, mesh, k, free)
+        Self::of_size(FEWEST_PATCHES, FEWEST_REFINEMENTS, mesh, k, free)
     }
 
-    /// Likewise, at least so many.
-    pub(crate) fn at_least(fewest: usize, mesh: &Mesh, k: &StiffnessMatrix, free: &[bool]) -> Option<Self> {
+    /// Likewise, at least so many, refined so many times.
+    pub(crate) fn of_size(
+        patches: usize,
+        refinements: usize,
+        mesh: &Mesh,
+        k: &StiffnessMatrix,
+        free: &[bool],
+    ) -> Option<Self> {
         let ancestry = mesh.ancestry();
-        let are_enough = |depth: &usize| mesh.triangles().len() >> (2 * depth) >= fewest;
-        let depth = (STORED + 1..=MOST.min(ancestry.len())).rev().find(are_enough)?;
+        let are_enough = |depth: &usize| mesh.triangles().len() >> (2 * depth) >= patches;
+        let depth = (refinements..=MOST.min(ancestry.len())).rev().find(are_enough)?;
         let (older, refinements) = ancestry.split_at(ancestry.len() - depth);
         let triangles = coarsest(mesh, refinements)?;
         let partition = Arc::new(Partition::new(refinements[0].coarse_vertices(), &triangles));

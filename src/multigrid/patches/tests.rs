@@ -18,8 +18,12 @@ fn refined(mesh: Mesh, times: usize) -> Mesh {
     (0..times).fold(mesh, |mesh, _| mesh.refine().unwrap().mesh)
 }
 
+fn of_size(patches: usize, mesh: &Mesh, k: &StiffnessMatrix, free: &[bool]) -> Option<Patches> {
+    Patches::of_size(patches, STORED + 1, mesh, k, free)
+}
+
 fn patches(mesh: &Mesh) -> Option<Patches> {
-    Patches::at_least(2, mesh, &stiffness(mesh), &inside(mesh))
+    of_size(2, mesh, &stiffness(mesh), &inside(mesh))
 }
 
 /// All kinds: a group that is full and one that is not, obtuse triangles, a hole.
@@ -51,7 +55,7 @@ fn patches_are_found_where_there_are_some() {
     // One triangle differs from its patch: inside, or at a corner.
     for odd in [0, mesh.triangles().len() / 2, 700] {
         let k = weighted_stiffness(&mesh, |t| if t == odd { 1.0 + 1e-8 } else { 1.0 });
-        assert!(Patches::at_least(2, &mesh, &k, &free).is_none(), "triangle {odd}");
+        assert!(of_size(2, &mesh, &k, &free).is_none(), "triangle {odd}");
     }
     // A tension for each patch is one stencil for each.
     let halves =
@@ -59,14 +63,14 @@ fn patches_are_found_where_there_are_some() {
             &mesh,
             |t| if mesh.corners(t).iter().all(|p| p[0] < 0.5 + 1e-9) { 1.0 } else { 7.0 },
         );
-    assert!(Patches::at_least(8, &mesh, &halves, &free).is_some());
-    assert!(Patches::at_least(2, &mesh, &halves, &free).is_none(), "two patches have two tensions each");
+    assert!(of_size(8, &mesh, &halves, &free).is_some());
+    assert!(of_size(2, &mesh, &halves, &free).is_none(), "two patches have two tensions each");
     // A vertex inside a patch is held, or one alone on an edge.
     for held in [[3, 5], [3, 0]] {
         let held = held.map(|k| f64::from(k) / 32.0);
         let free: Vec<bool> =
             mesh.points().iter().map(|p| (0..2).any(|k| (p[k] - held[k]).abs() > 1e-9)).collect();
-        assert!(Patches::at_least(2, &mesh, &stiffness(&mesh), &free).is_none());
+        assert!(of_size(2, &mesh, &stiffness(&mesh), &free).is_none());
     }
 }
 

@@ -12,9 +12,13 @@ const PATCH_CYCLES: usize = 13;
 /// Two solutions within the tolerance of the certificate, relative to the displacement.
 const SAME_DISPLACEMENT: f64 = 1e-6;
 
+/// Also such as are not worth it.
+fn patches_for(mesh: &Mesh, k: &StiffnessMatrix) -> Patches {
+    Patches::of_size(2, 4, mesh, k, &inside(mesh)).expect("there are patches")
+}
+
 fn on_patches(d: &PairDiscretization, options: &SolverOptions) -> Candidate {
-    let patches =
-        Patches::at_least(2, d.mesh(), d.stiffness(), &inside(d.mesh())).expect("there are patches");
+    let patches = patches_for(d.mesh(), d.stiffness());
     let levels = MembraneLevels::Patches(Box::new(patches), Cow::Borrowed(d.stiffness()));
     pair::multigrid::solve_on(&levels, d, NAME, options, Instant::now()).expect("it runs")
 }
@@ -94,16 +98,15 @@ fn patches_know_no_unit() {
 fn the_assembled_matrix_decides() {
     let mesh = rectangle([0.0, 0.0], [1.0, 1.0], [32; 2], Pattern::Right).unwrap();
     let d = PairDiscretization::new(&problem([1.0, 1.0], 0.05), mesh).unwrap();
-    let free = inside(d.mesh());
     // Stencils that are off by far more than rounding.
     let off = d.stiffness().map(|entry| (1.0 + 1e-7) * entry);
-    let patches = Patches::at_least(2, d.mesh(), &off, &free).expect("there are patches");
+    let patches = patches_for(d.mesh(), &off);
     let levels = MembraneLevels::Patches(Box::new(patches), Cow::Borrowed(d.stiffness()));
     let found = pair::multigrid::solve_on(&levels, &d, NAME, &options(), Instant::now()).unwrap();
     assert_eq!(found.statistics.status, Status::Solved);
     certify_pair(&d, found, TOLERANCE).unwrap();
 
-    let patches = Patches::at_least(2, d.mesh(), &off, &free).expect("there are patches");
+    let patches = patches_for(d.mesh(), &off);
     let levels = MembraneLevels::Patches(Box::new(patches), Cow::Owned(off));
     let found = pair::multigrid::solve_on(&levels, &d, NAME, &options(), Instant::now()).unwrap();
     assert!(certify_pair(&d, found, TOLERANCE).is_err(), "another matrix is noticed");

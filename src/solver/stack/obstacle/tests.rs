@@ -134,7 +134,7 @@ fn it_finds_what_the_active_set_method_finds() {
 /// One tension on patches; free sides, where the rows of the interface are those of fewer triangles; no patches with a foundation.
 #[test]
 fn patches_find_what_the_active_set_method_finds() {
-    let mesh = with_sides(square(64));
+    let mesh = with_sides(square(128));
     let sheet = || Membrane::new(2.0).load(load());
     let sheets = [
         ("fixed", sheet().height(0.02), true),
