@@ -2,7 +2,7 @@
 //!
 //! Such a triangle is a *patch*: it becomes a lattice, whose points have one stencil. Of the finest levels nothing is stored but
 //! the vectors, and eight patches are worked on at once; only along the edges of the coarse mesh are there lists of numbers. Below
-//! [`STORED`] segments the sides of the patches outweigh their insides: there are the levels of a [`Hierarchy`], whose rows are stored.
+//! 16 segments the sides of the patches outweigh their insides: there are the levels of a [`Hierarchy`], whose rows are stored.
 //!
 //! Compare Bergen, Hülsemann, *Hierarchical hybrid grids*, Numer. Linear Algebra Appl. 11 (2004) 279.
 

@@ -260,35 +260,16 @@ impl Problem<'_> {
         }
     }
 
-    /// `b - A x` at the points that are not held, zero at the others.
-    pub(super) fn residual(&self, x: &Field<f64>, b: &Field<f64>) -> Field<f64> {
-        let Self { grid, matrix, .. } = self;
-        let mut x = x.clone();
-        x.gather(grid);
-        let mut residual = Field::zero(grid);
-        let mut inflow = Inflow::new(grid);
-        for (g, sides) in inflow.sides.chunks_mut(grid.on_sides()).enumerate() {
-            let (x, r) = (x.group(grid, g), residual.group_mut(grid, g));
-            matrix.residuals_inside(grid, g, x, b.group(grid, g), |at, value| r[at] = value);
-            matrix.contribute(grid, g, x, sides);
-        }
-        inflow.sum_up(grid);
-        matrix.residuals_interface(grid, &x, b, &inflow.interface, |a, value| {
-            residual.interface[a] = if grid.is_held[a] { 0.0 } else { value };
-        });
-        residual
-    }
-
     /// By how much the energy is larger after a step than before it: the step times the mean of the residuals.
     pub(super) fn energy_change(&self, before: &Field<f64>, after: &Field<f64>) -> f64 {
-        let residuals = [before, after].map(|x| self.residual(x, self.b));
+        let residuals = [before, after].map(|x| self.matrix.residual(self.grid, x, self.b));
         let step = after.zip_with(before, |after, before| after - before);
         -0.5 * residuals.iter().map(|residual| step.dot(self.grid, residual)).sum::<f64>()
     }
 
     /// Adds the part of the correction, cut off at the bound, that lowers the energy most: `t d`, `0 <= t <= 1`.
     pub(super) fn line_search(&self, iterate: &mut Iterate, below: &mut Below) {
-        let grid = self.grid;
+        let Self { grid, matrix, b, .. } = self;
         let mut corrected = iterate.x.clone();
         self.correct_interface::<true>(iterate, &mut corrected, below);
         below.x.gather(below.grid);
@@ -296,8 +277,8 @@ impl Problem<'_> {
             self.correct_group::<true>(g, iterate, corrected.group_mut(grid, g), below);
         }
         let d = corrected.zip_with(&iterate.x, |corrected, x| corrected - x);
-        let slope = self.residual(&iterate.x, self.b).dot(grid, &d);
-        let curvature = -self.residual(&d, &Field::zero(grid)).dot(grid, &d);
+        let slope = matrix.residual(grid, &iterate.x, b).dot(grid, &d);
+        let curvature = -matrix.residual(grid, &d, &Field::zero(grid)).dot(grid, &d);
         let step = if curvature > 0.0 { (slope / curvature).clamp(0.0, 1.0) } else { 0.0 };
         iterate.x = iterate.x.zip_with(&d, |x, d| larger(x + step * d, 0.0));
     }

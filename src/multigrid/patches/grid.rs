@@ -94,9 +94,7 @@ impl Grid {
     pub(super) fn add_sides<T: Real>(&self, sides: &[Lanes<T>], interface: &mut [T]) {
         for (g, sides) in sides.chunks(self.on_sides()).enumerate() {
             for (places, lanes) in self.places(g).1.iter().zip(sides) {
-                for (&a, lane) in places.iter().zip(lanes.0) {
-                    interface[a as usize] += lane;
-                }
+                add_at(interface, places, *lanes);
             }
         }
     }
@@ -130,14 +128,16 @@ impl Grid {
     /// Whether what is held, and not on the grid with half the segments, lies between two points that are held.
     pub(super) fn is_held_between_held(&self) -> bool {
         let (m, partition) = (self.segments(), &self.partition);
-        partition.edges.iter().enumerate().all(|(edge, &[start, end])| {
-            let on_edge = &self.is_held[partition.first_on_edge(edge, m)..][..m - 1];
-            let at = |t: usize| match t {
-                0 => self.is_held[start as usize],
-                t if t == m => self.is_held[end as usize],
-                t => on_edge[t - 1],
-            };
+        (0..partition.edges.len()).all(|edge| {
+            let at = |t: usize| self.is_held[partition.on_edge(edge, t, m)];
             (1..m).step_by(2).all(|t| !at(t) || (at(t - 1) && at(t + 1)))
         })
+    }
+}
+
+/// Adds the lanes at these places.
+pub(super) fn add_at<T: Real>(values: &mut [T], places: &[u32; LANES], lanes: Lanes<T>) {
+    for (&a, lane) in places.iter().zip(lanes.0) {
+        values[a as usize] += lane;
     }
 }

@@ -123,7 +123,7 @@ impl<'p> Coarser<'p> {
     }
 
     /// The factor of the matrices.
-    fn scale(&self) -> f64 {
+    pub(super) fn scale(&self) -> f64 {
         self.units[1] / self.units[0]
     }
 
@@ -261,10 +261,5 @@ impl Coarser<'_> {
             sum -= 0.5 * f64::from(r) * f64::from(x.interface[a]);
         });
         sum / self.scale()
-    }
-
-    /// The unit of energies in single precision, in that of the finest matrix.
-    pub(super) fn units_ratio(&self) -> f64 {
-        self.scale()
     }
 }

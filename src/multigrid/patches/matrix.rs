@@ -6,7 +6,7 @@ mod galerkin;
 pub(super) use entries::{Entries, Stencil};
 pub(super) use galerkin::Galerkin;
 
-use super::grid::Grid;
+use super::grid::{Grid, add_at};
 use super::lanes::{LANES, Lanes, Real};
 
 /// A matrix on a level.
@@ -213,12 +213,5 @@ impl<T: Real> Matrix<T> {
     /// What a group in which hat functions are cut off contributes to the diagonal at a point.
     fn own_diagonal(&self, g: usize, at: usize) -> Option<Lanes<T>> {
         self.truncated[g].as_ref().map(|truncated| truncated.entries.diagonal[at])
-    }
-}
-
-/// Adds the lanes at these places.
-fn add_at<T: Real>(values: &mut [T], places: &[u32; LANES], lanes: Lanes<T>) {
-    for (&a, lane) in places.iter().zip(lanes.0) {
-        values[a as usize] += lane;
     }
 }

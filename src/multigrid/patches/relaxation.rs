@@ -12,7 +12,7 @@ use super::matrix::{Matrix, Rows};
 use crate::parallel::prelude::*;
 
 /// Sweeps between two corrections.
-pub(super) const SWEEPS: usize = 2;
+const SWEEPS: usize = 2;
 
 /// The colours inside a patch: whether the numbers of the row and of the point are odd.
 const COLORS: [[usize; 2]; 4] = [[0, 0], [1, 1], [0, 1], [1, 0]];
@@ -165,6 +165,26 @@ impl<T: Real> Matrix<T> {
                 take(at, sum - self.diagonal[at] * x[at]);
             }
         }
+    }
+}
+
+impl Matrix<f64> {
+    /// `b - A x` at the points that are not held, zero at the others.
+    pub(super) fn residual(&self, grid: &Grid, x: &Field<f64>, b: &Field<f64>) -> Field<f64> {
+        let mut x = x.clone();
+        x.gather(grid);
+        let mut residual = Field::zero(grid);
+        let mut inflow = Inflow::new(grid);
+        for (g, sides) in inflow.sides.chunks_mut(grid.on_sides()).enumerate() {
+            let (x, r) = (x.group(grid, g), residual.group_mut(grid, g));
+            self.residuals_inside(grid, g, x, b.group(grid, g), |at, value| r[at] = value);
+            self.contribute(grid, g, x, sides);
+        }
+        inflow.sum_up(grid);
+        self.residuals_interface(grid, &x, b, &inflow.interface, |a, value| {
+            residual.interface[a] = if grid.is_held[a] { 0.0 } else { value };
+        });
+        residual
     }
 }
 

@@ -70,7 +70,7 @@ impl<'p> Solve<'p> {
         let x = match self.problem.start.take() {
             Some(start) => {
                 let at = |a: usize| larger(start[a], self.problem.lower);
-                let start = Field::of(&self.patches.grids[finest], &self.patches.vertices, at);
+                let start = Field::of(self.patches.finest_grid(), &self.patches.vertices, at);
                 self.with_heights(finest, start)
             }
             None => self.nested(limits, &mut cycles)?,
@@ -146,13 +146,12 @@ impl<'p> Solve<'p> {
         let is_finest = l == patches.finest();
         let is_bounded = problem.lower.is_finite();
         coarser.restart(l)?;
-        let weight = |a: usize| if is_finest { problem.weight[a] } else { 1.0 };
         let problem = Problem {
             grid,
             matrix: Matrix::new(grid, &patches.stencils, 1.0),
             b: &loads[l],
             is_bounded,
-            weight: if is_finest { patches.weight(weight) } else { Weight::one(grid) },
+            weight: if is_finest { patches.weight(&problem.weight) } else { Weight::one(grid) },
             tolerance: if is_finest { problem.tolerance } else { 0.0 },
         };
         let iterate = Iterate { x, frozen: Frozen::nothing(grid) };
@@ -172,7 +171,7 @@ impl<'p> Solve<'p> {
     fn assembled(&self, x: &Field<f64>) -> Assembled {
         let Self { patches, problem, .. } = self;
         let mut over_vertices = vec![0.0; patches.is_free.len()];
-        x.for_each(&patches.grids[patches.finest()], &patches.vertices, |a, value| over_vertices[a] = value);
+        x.for_each(patches.finest_grid(), &patches.vertices, |a, value| over_vertices[a] = value);
         let x = over_vertices;
         let row = |a: usize| {
             if !patches.is_free[a] {
@@ -214,15 +213,7 @@ impl<'p> Solve<'p> {
         let patches = self.patches;
         let grid = patches.finest_grid();
         let load = &self.loads[patches.finest()];
-        let by_stencils = Problem {
-            grid,
-            matrix: Matrix::new(grid, &patches.stencils, 1.0),
-            b: load,
-            is_bounded: false,
-            weight: Weight::one(grid),
-            tolerance: 0.0,
-        }
-        .residual(x, load);
+        let by_stencils = Matrix::new(grid, &patches.stencils, 1.0).residual(grid, x, load);
         let by_rows = Field::of(grid, &patches.vertices, |a| residual[a]);
         let difference = by_rows.zip_with(&by_stencils, |rows, stencils| rows - stencils);
         let refined = load.zip_with(&difference, |load, difference| load + difference);
@@ -232,10 +223,10 @@ impl<'p> Solve<'p> {
 
 impl Patches {
     /// The weights on the finest grid.
-    fn weight(&self, at: impl Fn(usize) -> f64) -> Weight {
+    fn weight(&self, over_vertices: &[f64]) -> Weight {
         let grid = self.finest_grid();
         let (points, inside) = (grid.lattice.points(), grid.lattice.at(1, 1));
-        let weight = |number: u32| if Numbers::is_one(number) { at(number as usize) } else { 0.0 };
+        let weight = |number: u32| if Numbers::is_one(number) { over_vertices[number as usize] } else { 0.0 };
         let of_group = |numbers: &[[u32; LANES]]| Lanes(numbers[inside].map(weight));
         Weight {
             inside: self.vertices.0.chunks(points).map(of_group).collect(),

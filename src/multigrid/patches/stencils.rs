@@ -82,20 +82,14 @@ pub(super) fn is_assembled(
     let same = |place: usize, x: f64, y: f64| (x - y).abs() <= SAME_ENTRY * matrix.diagonal[place];
     let entry = |a: usize, b: usize| entry(k, vertices[a] as usize, vertices[b] as usize);
     let has_diagonal = |a: usize| !is_free(a) || same(a, entry(a, a), matrix.diagonal[a]);
-    let has_couplings = |(edge, &[start, end]): (usize, &[u32; 2])| {
-        let first = partition.first_on_edge(edge, m);
-        let place = |t: usize| match t {
-            0 => start as usize,
-            t if t == m => end as usize,
-            t => first + t - 1,
-        };
+    let has_couplings = |edge: usize| {
         (0..m).all(|piece| {
-            let [a, b] = [place(piece), place(piece + 1)];
+            let [a, b] = [piece, piece + 1].map(|t| partition.on_edge(edge, t, m));
             let has_row = is_free(a) || is_free(b);
             !has_row || same(a, -entry(a, b), matrix.along[edge * m + piece])
         })
     };
-    (0..vertices.len()).all(has_diagonal) && partition.edges.iter().enumerate().all(has_couplings)
+    (0..vertices.len()).all(has_diagonal) && (0..partition.edges.len()).all(has_couplings)
 }
 
 /// An entry; zero where none is stored.

@@ -1,5 +1,5 @@
 use super::field::Field;
-use super::finest::{Frozen, Problem, Weight};
+use super::finest::Frozen;
 use super::lanes::{Lanes, Real};
 use super::levels::Coarser;
 use super::matrix::Matrix;
@@ -127,16 +127,8 @@ fn to_double(x: &Field<f32>) -> Field<f64> {
 /// `1/2 x'A x` on the finest grid.
 fn energy(patches: &Patches, x: &Field<f64>) -> f64 {
     let grid = patches.finest_grid();
-    let zero = Field::zero(grid);
-    let problem = Problem {
-        grid,
-        matrix: Matrix::new(grid, &patches.stencils, 1.0),
-        b: &zero,
-        is_bounded: false,
-        weight: Weight { inside: Vec::new(), interface: Vec::new() },
-        tolerance: 0.0,
-    };
-    -0.5 * problem.residual(x, &zero).dot(grid, x)
+    let matrix = Matrix::new(grid, &patches.stencils, 1.0);
+    -0.5 * matrix.residual(grid, x, &Field::zero(grid)).dot(grid, x)
 }
 
 /// A function of a coarser grid on the finest one, without its values at frozen points.
@@ -204,7 +196,7 @@ fn corrections_lower_the_energy() {
             coarser.solve(finest, true, round > 0).unwrap();
             let c = coarser.below(finest).x.clone();
             let grid = &patches.grids[below];
-            let work = to_double(&b).dot(grid, &to_double(&c)) / coarser.units_ratio();
+            let work = to_double(&b).dot(grid, &to_double(&c)) / coarser.scale();
             let energy = coarser.energy(below, &c);
             assert!(energy < work * (1.0 + SINGLE_ROUNDING), "round {round}: {energy} {work}");
             assert!(energy > 0.0 && work > 0.0);

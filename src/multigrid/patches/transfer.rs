@@ -28,13 +28,8 @@ pub(super) fn prolong_inside<T: Real>(
 pub(super) fn prolong_interface<T: Real>([coarse, fine]: [&Grid; 2], c: &[T], mut put: impl FnMut(usize, T)) {
     let (m, partition, half) = (fine.segments(), &fine.partition, T::of(0.5));
     (0..partition.vertices).for_each(|a| put(a, c[a]));
-    for (edge, &[start, end]) in partition.edges.iter().enumerate() {
-        let first = partition.first_on_edge(edge, coarse.segments());
-        let at = |t: usize| match t {
-            0 => c[start as usize],
-            t if 2 * t == m => c[end as usize],
-            t => c[first + t - 1],
-        };
+    for edge in 0..partition.edges.len() {
+        let at = |t: usize| c[partition.on_edge(edge, t, coarse.segments())];
         let first = partition.first_on_edge(edge, m);
         for t in 1..m {
             put(first + t - 1, half * (at(t / 2) + at(t.div_ceil(2))));

@@ -91,6 +91,16 @@ impl Partition {
         self.vertices + edge * (segments - 1)
     }
 
+    /// The point of an edge so many segments from its first end, ends included.
+    #[inline(always)]
+    pub(in crate::multigrid) fn on_edge(&self, edge: usize, t: usize, segments: usize) -> usize {
+        match t {
+            0 => self.edges[edge][0] as usize,
+            t if t == segments => self.edges[edge][1] as usize,
+            t => self.first_on_edge(edge, segments) + t - 1,
+        }
+    }
+
     /// The point of an edge next to one of its ends, if there are at least two segments.
     #[inline(always)]
     pub(in crate::multigrid) fn nearest(&self, spoke: Spoke, segments: usize) -> usize {
