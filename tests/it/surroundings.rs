@@ -299,6 +299,14 @@ fn what_does_not_fit_into_memory_is_refused_before_it_is_begun() {
     let factoring = run(folder.path(), "solve case.toml --refine 5 --memory-limit 1 --backend clarabel");
     assert!(factoring.stderr.contains("or the solver multigrid"), "{}", factoring.stderr);
     run(folder.path(), "solve case.toml -q --refine 5 --memory-limit 1 --backend multigrid").success();
+    // The norms of the error need ten times as much as the solution that they measure.
+    fs::write(folder.path().join("case.toml"), "case = \"strip\"\n[mesh]\ncells = 64\n").unwrap();
+    let stopped = run(folder.path(), "converge case.toml -q --levels 3 --memory-limit 0.25 --overwrite");
+    assert_eq!(stopped.code, Some(1), "{}", stopped.stderr);
+    assert!(stopped.stderr.contains("stopped after 1 of 3 levels: the next level"), "{}", stopped.stderr);
+    run(folder.path(), "solve case.toml -q --refine 2 --memory-limit 0.25 --no-picture").success();
+    let refused = run(folder.path(), "converge case.toml --refine 2 --memory-limit 0.25");
+    assert!(refused.stderr.contains("GiB of memory, and 0.25 are available"), "{}", refused.stderr);
 }
 
 /// Runs where no file may become longer than so many KiB: what a full disk does to a run.

@@ -33,9 +33,18 @@ backend = "{backend}"
 """
 
 
-def estimate(program: Program, case: Path) -> float:
-    """Bytes, from the refusal of a run with next to nothing."""
-    command = [program.executable, "solve", case, "--memory-limit", "0.001"]
+# Of which `converge` measures the errors.
+KNOWN = """
+case = "strip"
+
+[mesh]
+cells = {cells}
+"""
+
+
+def estimate(program: Program, case: Path, command: str = "solve", limit: float = 0.001) -> float:
+    """Bytes, from the refusal of a run with next to nothing, or with what its mesh needs but not the rest."""
+    command = [program.executable, command, case, "--memory-limit", str(limit)]
     refused = subprocess.run(command, capture_output=True, text=True)
     found = re.search(r"need about ([0-9.]+) GiB", refused.stderr)
     assert refused.returncode == 2 and found, refused.stderr
@@ -52,9 +61,9 @@ print(os.waitstatus_to_exitcode(status), 1024 * usage.ru_maxrss)
 """
 
 
-def peak(program: Program, case: Path) -> float:
+def peak(program: Program, case: Path, *command: str) -> float:
     """Bytes that a run has had at most."""
-    command = [program.executable, "solve", case, "--quiet", "--out", case.parent / "results"]
+    command = [program.executable, *(command or ["solve"]), case, "--quiet", "--out", case.parent / "results"]
     measured = subprocess.run([sys.executable, "-c", MEASURE, *command], capture_output=True, text=True)
     code, memory = measured.stdout.split()
     assert code == "0", measured.stderr
@@ -73,3 +82,13 @@ def test_a_run_takes_no_more_memory_than_is_foreseen(
     if backend == "multigrid":
         case.write_text(CASE.format(cells=cells // 4, backend=backend))
         assert estimate(program, case) < taken
+
+
+def test_so_does_one_that_measures_errors(program: Program, tmp_path: Path) -> None:
+    case = tmp_path / "case.toml"
+    case.write_text(KNOWN.format(cells=256))
+    foreseen = estimate(program, case, "converge", 0.5)
+    taken = peak(program, case, "converge", "--levels", "1")
+    assert taken <= foreseen <= OVERESTIMATED * taken, (taken / GIB, foreseen / GIB)
+    # The negative test: what a solution alone is said to need would not do.
+    assert estimate(program, case) < taken

@@ -8,14 +8,14 @@ use std::time::Instant;
 use super::solution::{A_SOLUTION, left_out_line, write_solution};
 use crate::action::ContactSolution;
 use crate::cli::args::AdaptArguments;
-use crate::cli::case::{CaseFile, SolverName};
+use crate::cli::case::CaseFile;
 use crate::cli::failure::Failure;
 use crate::cli::run::clock::Clock;
 use crate::cli::run::files::{CHECKPOINT, HISTORY, LEVELS, MEMBRANES, MESH, Part, RIM, SOLUTION, SUMMARY};
 use crate::cli::run::folder::{Claim, Folder};
 use crate::cli::run::input::{self, Input};
 use crate::cli::run::levels::{GOES_ON, KEPT, Levels, MEMORY, TIME, failure, settings, too_late};
-use crate::cli::run::memory::Memory;
+use crate::cli::run::memory::{Memory, Work};
 use crate::cli::run::pictures::{Begun, Pictures};
 use crate::cli::run::progress::Progress;
 use crate::cli::run::setup::{Setup, options, solver, too_early};
@@ -77,7 +77,7 @@ pub(crate) fn run(arguments: &AdaptArguments, watch: &Watch) -> Result<(), Failu
             setup.name
         )));
     }
-    setup.check_memory(setup.case.solver.name)?;
+    setup.check_memory(setup.solving(setup.case.solver.name))?;
     check_first_mesh(&setup, arguments.max_vertices)?;
     // Nobody may find a folder of which the run says that nothing was written.
     clock.check(too_early(&arguments.case.path))?;
@@ -193,7 +193,7 @@ struct Budget {
     tolerance: f64,
     vertices: f64,
     memory: Memory,
-    solver: SolverName,
+    work: Work,
     clock: Clock,
 }
 
@@ -203,7 +203,7 @@ impl Budget {
             tolerance: arguments.tolerance,
             vertices: arguments.max_vertices as f64,
             memory: setup.memory,
-            solver: setup.case.solver.name,
+            work: setup.solving(setup.case.solver.name),
             clock,
         }
     }
@@ -222,7 +222,7 @@ impl Budget {
         let seconds = growth * seconds + WRITING + WRITING_PER_VERTEX * vertices;
         if vertices > self.vertices {
             Some(Stop::Vertices)
-        } else if !self.memory.suffices(self.solver, MORE_MEMORY * vertices) {
+        } else if !self.memory.suffices(self.work, MORE_MEMORY * vertices) {
             Some(Stop::Memory)
         } else if !self.clock.allows(seconds) {
             Some(Stop::Time)

@@ -12,7 +12,7 @@ use crate::cli::failure::Failure;
 use crate::cli::run::clock::Clock;
 use crate::cli::run::files::{Part, ROWS, TIMES};
 use crate::cli::run::folder::{Claim, Folder};
-use crate::cli::run::memory::Memory;
+use crate::cli::run::memory::{Memory, Work};
 use crate::cli::run::pictures::Pictures;
 use crate::cli::run::progress::Progress;
 use crate::cli::run::setup::{Setup, check_refinements, solver};
@@ -192,7 +192,7 @@ impl<'a> Bench<'a> {
     /// Refuses meshes of which the finest does not fit into memory, whatever the solver.
     fn check_memory(&self, name: &str, finest: f64) -> Result<(), Failure> {
         // Of all solvers, this one needs the least.
-        self.memory.check(name, SolverName::Multigrid, finest)
+        self.memory.check(name, Work::solving(SolverName::Multigrid), finest)
     }
 
     /// Runs all solvers on one mesh, but for those that need more memory than there is. After each, all rows are in the file: a long run may be stopped.
@@ -214,7 +214,8 @@ impl<'a> Bench<'a> {
         let place = Place { problem: name, n, discretization: &d };
         for index in 0..self.solvers.len() {
             self.progress.stage(format!("{} on {vertices} vertices", self.solvers[index].as_str()));
-            let row = if self.memory.suffices(self.solvers[index], mesh.points().len() as f64) {
+            let row = if self.memory.suffices(Work::solving(self.solvers[index]), mesh.points().len() as f64)
+            {
                 comparison.row(index, &place)
             } else {
                 comparison.left_out(index, &place, MEMORY)

@@ -36,7 +36,7 @@ pub(crate) fn run(arguments: &CheckArguments, watch: &Watch) -> Result<(), Failu
     }
     if arguments.answer.is_none() {
         for name in solvers() {
-            setup.check_memory(name)?;
+            setup.check_memory(setup.solving(name))?;
         }
     }
     let (d, seconds) = setup.discretize(&progress)?;

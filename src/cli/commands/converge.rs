@@ -4,13 +4,12 @@ use std::path::Path;
 
 use super::solution::left_out_line;
 use crate::cli::args::ConvergeArguments;
-use crate::cli::case::SolverName;
 use crate::cli::failure::Failure;
 use crate::cli::run::clock::Clock;
 use crate::cli::run::files::{ERRORS, ERRORS_TABLE, Part, RATES};
 use crate::cli::run::folder::{Claim, Folder};
 use crate::cli::run::levels::{GOES_ON, KEPT, Levels, MEMORY, TIME, failure, settings, too_late};
-use crate::cli::run::memory::Memory;
+use crate::cli::run::memory::{Memory, Work};
 use crate::cli::run::pictures::Pictures;
 use crate::cli::run::progress::Progress;
 use crate::cli::run::setup::{Setup, check_refinements, options, solver, too_early};
@@ -54,8 +53,8 @@ pub(crate) fn run(arguments: &ConvergeArguments, watch: &Watch) -> Result<(), Fa
     if let Some(name) = arguments.backend {
         setup.case.solver.name = name;
     }
-    let solver_name = setup.case.solver.name;
-    setup.check_memory(solver_name)?;
+    let work = Work { pair_norms: matches!(exact, Exact::Pair(_)), ..setup.solving(setup.case.solver.name) };
+    setup.check_memory(work)?;
     check_refinements(&setup.name, setup.family.mesh().points().len() as f64, arguments.levels - 1)?;
     // Nobody may find a folder of which the run says that nothing was written.
     clock.check(too_early(&arguments.case.path))?;
@@ -72,7 +71,6 @@ pub(crate) fn run(arguments: &ConvergeArguments, watch: &Watch) -> Result<(), Fa
     levels.truncate(arguments.levels);
 
     let title = setup.case.title.clone();
-    let membranes = if setup.case.pair().is_some() { 1 } else { setup.case.problem.membranes().len() };
     let mut study = Study::new(exact, &setup)?;
     let settings = &setup.case.solver;
     let name = setup.name.clone();
@@ -81,8 +79,7 @@ pub(crate) fn run(arguments: &ConvergeArguments, watch: &Watch) -> Result<(), Fa
         levels: arguments.levels,
         clock,
         memory: setup.memory,
-        solver: solver_name,
-        membranes,
+        work,
         time_limit: settings.time_limit,
     };
     let stop = add_levels(&setup.name, &mut study, &mut levels, &budget, &kept, &progress)?;
@@ -164,9 +161,8 @@ struct Budget {
     levels: usize,
     clock: Clock,
     memory: Memory,
-    solver: SolverName,
-    /// Of which each needs at most what a pair does; 1 for that.
-    membranes: usize,
+    /// What each level is.
+    work: Work,
     /// Seconds of each solve.
     time_limit: Option<TimeLimit>,
 }
@@ -176,7 +172,7 @@ impl Budget {
     fn stop(&self, last: &LevelErrors) -> Option<&'static str> {
         if !self.clock.allows(GROWTH * (last.solve_seconds + last.norm_seconds)) {
             Some(TIME)
-        } else if !self.memory.suffices(self.solver, GROWTH * (self.membranes * last.vertices) as f64) {
+        } else if !self.memory.suffices(self.work, GROWTH * last.vertices as f64) {
             Some(MEMORY)
         } else {
             None

@@ -38,7 +38,7 @@ pub(crate) fn run(arguments: &SolveArguments, watch: &Watch) -> Result<(), Failu
     let progress = Progress::new(arguments.case.quiet);
     let mut setup = Setup::new(&arguments.case, &progress)?;
     override_settings(&mut setup, arguments, &clock);
-    setup.check_memory(setup.case.solver.name)?;
+    setup.check_memory(setup.solving(setup.case.solver.name))?;
     if arguments.dual && setup.case.pair().is_none() {
         return Err(Failure::Input(format!("{}: --dual is for a pair so far: leave it out", setup.name)));
     }

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use super::input::{self, Input};
-use super::memory::Memory;
+use super::memory::{Memory, Work};
 use super::notes::FileNotes;
 use super::progress::Progress;
 use crate::cli::args::CaseArguments;
@@ -76,11 +76,15 @@ impl Setup {
         )))
     }
 
-    /// Refuses a solver that needs more memory on this mesh than there is.
-    pub(crate) fn check_memory(&self, name: SolverName) -> Result<(), Failure> {
-        let vertices = self.family.mesh().points().len() as f64;
+    /// A solution by this solver, its bound and its files.
+    pub(crate) fn solving(&self, solver: SolverName) -> Work {
         let membranes = if self.case.pair().is_some() { 1 } else { self.case.problem.membranes().len() };
-        self.memory.check_stack(&self.name, name, vertices, membranes)
+        Work { membranes, ..Work::solving(solver) }
+    }
+
+    /// Refuses what needs more memory on this mesh than there is.
+    pub(crate) fn check_memory(&self, work: Work) -> Result<(), Failure> {
+        self.memory.check(&self.name, work, self.family.mesh().points().len() as f64)
     }
 
     /// Assembles the discrete problem, and says how long it took.
@@ -135,7 +139,7 @@ fn make_mesh(name: &str, case: &CaseFile, further: usize, memory: Memory) -> Res
     // Of all solvers, this one needs the least.
     let check = |vertices: f64| {
         let finest = check_refinements(name, vertices, refinements)?;
-        memory.check(name, SolverName::Multigrid, finest)
+        memory.check(name, Work::solving(SolverName::Multigrid), finest)
     };
     let (mut node_tags, mut groups, mut notes) = (Vec::new(), Vec::new(), String::new());
     let mut family = match &case.mesh {
