@@ -13,6 +13,7 @@ mod terminal;
 pub use case::{CaseFile, MeshSource, SolverName, SolverSettings};
 pub use failure::Failure;
 
+use std::ffi::OsString;
 use std::io::{self, IsTerminal, Write};
 use std::process::ExitCode;
 
@@ -23,13 +24,20 @@ use run::watch::watched;
 
 /// Runs the program on the arguments of the process.
 pub fn main() -> ExitCode {
-    let result = match Arguments::try_parse() {
+    run(std::env::args_os()).into()
+}
+
+/// Runs the program on these arguments, of which the first is its own name, and returns the exit code.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    let command = arguments.get(1).map(|command| command.to_string_lossy().into_owned());
+    let result = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => watched(move |watch| commands::run(&arguments.command, watch)),
         Err(error) if !error.use_stderr() => terminal::print(&error.to_string()),
-        Err(error) => Err(Failure::Input(args::one_line(&error, std::env::args().nth(1).as_deref()))),
+        Err(error) => Err(Failure::Input(args::one_line(&error, command.as_deref()))),
     };
     match result {
-        Ok(()) => ExitCode::SUCCESS,
+        Ok(()) => 0,
         Err(failure) => {
             let message = format!("error: {failure}");
             // One line for who reads it by a program; a terminal would break it inside of words.

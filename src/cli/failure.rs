@@ -1,7 +1,5 @@
 //! How a run fails.
 
-use std::process::ExitCode;
-
 use thiserror::Error;
 
 /// Why a command did not succeed: one line, and an exit code.
@@ -22,14 +20,14 @@ pub enum Failure {
 }
 
 impl Failure {
-    pub(super) fn exit_code(&self) -> ExitCode {
+    pub(super) fn exit_code(&self) -> u8 {
         match self {
-            Self::Input(_) => ExitCode::from(2),
-            Self::NotCertified(_) => ExitCode::from(1),
+            Self::Input(_) => 2,
+            Self::NotCertified(_) => 1,
             // As shells have it: 128 and the number of the signal.
-            Self::Interrupted(_) => ExitCode::from(130),
+            Self::Interrupted(_) => 130,
             // As that of a panic.
-            Self::Internal(_) => ExitCode::from(101),
+            Self::Internal(_) => 101,
         }
     }
 }

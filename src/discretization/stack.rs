@@ -283,8 +283,8 @@ impl StackDiscretization {
         self.membranes[i - 1].first
     }
 
-    /// The unknown of membrane `i` (from 1) at a vertex.
-    pub(crate) fn unknown(&self, i: usize, a: usize) -> Option<usize> {
+    /// The number of the unknown of membrane `i` (from 1) at a vertex; `None` where it is held.
+    pub fn unknown(&self, i: usize, a: usize) -> Option<usize> {
         self.membranes[i - 1].number[a].map(|number| number as usize)
     }
 

@@ -69,8 +69,13 @@ impl Membrane {
     }
 
     /// No support on the boundary, but for the curves that have their own data.
-    pub fn free(mut self) -> Self {
-        self.elsewhere = Support::Free { traction: 0.0.into() };
+    pub fn free(self) -> Self {
+        self.traction(0.0)
+    }
+
+    /// No support on the boundary, but a line load (force per length, positive upwards), except on the curves that have their own data.
+    pub fn traction(mut self, traction: impl Into<Function>) -> Self {
+        self.elsewhere = Support::Free { traction: traction.into() };
         self
     }
 

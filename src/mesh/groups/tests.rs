@@ -57,6 +57,30 @@ fn regions_and_curves_overlap() {
 }
 
 #[test]
+fn parts_are_named_by_their_numbers_too() {
+    let by_place = named(square(4));
+    let west: Vec<usize> = by_place.groups().region("west").unwrap().collect();
+    // Ends in any order; the last edge lies inside.
+    let mesh = square(4).with_region_of("west", west.iter().rev().copied().collect()).unwrap();
+    let mesh = mesh.with_curve_of("shore", vec![[1, 0], [1, 2], [12, 6]]).unwrap();
+    assert_eq!(mesh.groups().region("west").unwrap().collect::<Vec<_>>(), west);
+    assert_eq!(mesh.groups().curve("shore").unwrap().collect::<Vec<_>>(), [[0, 1], [1, 2], [6, 12]]);
+
+    let says = |named: Result<Mesh, GroupError>| named.unwrap_err().to_string();
+    let beyond = says(square(1).with_region_of("a", vec![0, 2]));
+    assert_eq!(beyond, "the region `a` names triangle 2, of 2: count from 0");
+    assert!(square(1).with_region_of("a", vec![]).is_err() && square(1).with_curve_of("a", vec![]).is_err());
+    for ends in [[1, 2], [0, 0], [0, 4], [4, 0]] {
+        let no_edge = says(square(1).with_curve_of("a", vec![[0, 1], ends]));
+        let [a, b] = ends;
+        let expected = format!(
+            "the curve `a` names an edge from vertex {a} to {b}, which no triangle has: give its two ends"
+        );
+        assert_eq!(no_edge, expected);
+    }
+}
+
+#[test]
 fn what_cannot_be_named_is_refused_with_the_remedy() {
     let mesh = || named(square(4));
     let nowhere = |_: [f64; 2]| false;
