@@ -29,6 +29,7 @@ mod pair;
 #[cfg(test)]
 pub(crate) mod samples;
 mod stack;
+mod support;
 
 pub use builder::ContactProblemBuilder;
 pub use cases::{
@@ -42,6 +43,7 @@ pub use function::{EvaluationError, Function};
 pub use membrane::{Membrane, Support};
 pub use pair::Pair;
 pub use stack::{ContactProblem, StackBuilder};
+pub use support::{ByCurve, TractionError};
 
 impl ExactSolution {
     /// The problem that it solves.
