@@ -93,12 +93,13 @@ impl ContactSolution {
 
     /// The area of the dual cells in contact, in all gaps together.
     pub fn contact_area(&self) -> f64 {
-        self.gaps().iter().map(|gap| gap.contact_area).sum()
+        // The sum of none is -0.
+        0.0 + self.gaps().iter().map(|gap| gap.contact_area).sum::<f64>()
     }
 
     /// The force of all actions together.
     pub fn total_force(&self) -> f64 {
-        self.gaps().iter().map(|gap| gap.total_force).sum()
+        0.0 + self.gaps().iter().map(|gap| gap.total_force).sum::<f64>()
     }
 
     /// The energy `J(u_h)`.

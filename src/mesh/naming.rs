@@ -57,7 +57,7 @@ pub enum GroupError {
     },
     /// A curve without an edge.
     #[error(
-        "no edge of the boundary lies on the curve `{}` with both ends and its midpoint: allow for rounding, as in `x.abs() < 1e-9`, or refine the mesh",
+        "no edge of the boundary lies on the curve `{}` with both ends and its midpoint: allow for rounding, as in |x| < 1e-9, or refine the mesh",
         excerpt(name)
     )]
     EmptyCurve {

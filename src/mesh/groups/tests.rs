@@ -94,7 +94,7 @@ fn what_cannot_be_named_is_refused_with_the_remedy() {
         ),
         (
             mesh().with_curve("crack", |[x, _]| x == 0.5),
-            "no edge of the boundary lies on the curve `crack` with both ends and its midpoint: allow for rounding, as in `x.abs() < 1e-9`, or refine the mesh",
+            "no edge of the boundary lies on the curve `crack` with both ends and its midpoint: allow for rounding, as in |x| < 1e-9, or refine the mesh",
         ),
     ];
     for (result, message) in table {
