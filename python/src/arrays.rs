@@ -78,6 +78,10 @@ pub(crate) fn counted<const N: usize>(values: &Bound<'_, PyAny>, what: &str) -> 
 fn as_array<'py>(values: &Bound<'py, PyAny>, dtype: &str, what: &str) -> PyResult<Bound<'py, PyAny>> {
     let py = values.py();
     let numpy = py.import("numpy")?;
+    // What is masked is no number.
+    if values.hasattr("mask")? && numpy.getattr("ma")?.call_method1("is_masked", (values,))?.is_truthy()? {
+        return Err(data_error(py, what, "has masked values: fill them"));
+    }
     let convert = || {
         let array = numpy.call_method1("asarray", (values,))?;
         // An empty list is an array of floats to numpy.

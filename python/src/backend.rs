@@ -63,8 +63,7 @@ fn call(callable: &Bound<'_, PyAny>, qp: &QpProblem, options: &QpOptions) -> PyR
     keywords.set_item("time_limit", options.time_limit.map(|limit| limit.seconds()))?;
     let answer = callable.call(program(py, qp)?, Some(&keywords))?;
     let Ok((x, y)) = answer.extract::<(Bound<'_, PyAny>, Bound<'_, PyAny>)>() else {
-        let kind = answer.get_type();
-        return Err(PyTypeError::new_err(format!("a solver must return (x, y), not {kind}")));
+        return Err(PyTypeError::new_err(format!("a solver must return (x, y), not {}", answer.repr()?)));
     };
     Ok((vector(&x, "x")?, vector(&y, "y")?))
 }

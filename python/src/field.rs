@@ -102,12 +102,12 @@ impl Reader<'_> {
     }
 }
 
-/// A number, of Python or of numpy; a complex one is none.
+/// A number, of Python or of numpy; a complex one is none, nor is an array of one.
 fn number(datum: &Bound<'_, PyAny>) -> PyResult<Option<f64>> {
-    let kind =
-        datum.getattr_opt("dtype")?.map(|dtype| dtype.getattr("kind")?.extract::<char>()).transpose()?;
-    let is_real = kind.is_none_or(|kind| matches!(kind, 'b' | 'i' | 'u' | 'f'));
-    Ok(if is_real { datum.extract().ok() } else { None })
+    let Some(dtype) = datum.getattr_opt("dtype")? else { return Ok(datum.extract().ok()) };
+    let is_real = matches!(dtype.getattr("kind")?.extract()?, 'b' | 'i' | 'u' | 'f');
+    let is_one = datum.getattr("ndim")?.extract::<usize>()? == 0;
+    Ok(if is_real && is_one { datum.extract().ok() } else { None })
 }
 
 /// A value for each name.

@@ -366,8 +366,9 @@ impl Mesh {
 
     /// The vertices of each triangle, counterclockwise. Shape: (triangles, 3).
     #[getter]
-    fn triangles<'py>(slf: &Bound<'py, Self>) -> Bound<'py, PyArray2<usize>> {
-        view_rows(slf, |mesh| mesh.core().triangles())
+    fn triangles<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        // Signed, so that differences are what they seem.
+        view_rows(slf, |mesh| mesh.core().triangles()).call_method1("view", ("int64",))
     }
 
     /// What each vertex is: 0 inside, 1 on the boundary, 2 of no triangle.
@@ -387,7 +388,7 @@ impl Mesh {
         let groups = self.core().groups();
         let by_name = PyDict::new(py);
         for name in groups.regions().iter() {
-            let triangles: Vec<usize> = groups.region(name).into_iter().flatten().collect();
+            let triangles: Vec<i64> = groups.region(name).into_iter().flatten().map(|t| t as i64).collect();
             by_name.set_item(name, PyArray1::from_vec(py, triangles))?;
         }
         Ok(by_name)
@@ -399,8 +400,8 @@ impl Mesh {
         let groups = self.core().groups();
         let by_name = PyDict::new(py);
         for name in groups.curves().iter() {
-            let edges: Vec<Vec<usize>> =
-                groups.curve(name).into_iter().flatten().map(|ends| ends.to_vec()).collect();
+            let edges = groups.curve(name).into_iter().flatten();
+            let edges: Vec<Vec<i64>> = edges.map(|ends| ends.map(|a| a as i64).to_vec()).collect();
             let edges = PyArray2::from_vec2(py, &edges).map_err(value_error)?;
             by_name.set_item(name, edges)?;
         }
@@ -424,6 +425,15 @@ impl Mesh {
     fn h(&self, py: Python<'_>) -> PyResult<f64> {
         let mesh = Arc::clone(self.core());
         wait_for(py, move || mesh.quality().h_max)
+    }
+
+    /// It never changes.
+    fn __copy__(slf: Py<Self>) -> Py<Self> {
+        slf
+    }
+
+    fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
+        slf
     }
 
     fn __repr__(&self) -> String {

@@ -133,7 +133,11 @@ fn membrane(read: Reader, given: &Bound<'_, PyAny>, place: &str) -> PyResult<Mem
         membrane = membrane.foundation(read.field(&foundation, &at("foundation"))?);
     }
     membrane = held(read, membrane, [get("height")?, get("traction")?], [&at("height"), &at("traction")])?;
-    let pressed = get("pressed")?.map_or(Ok(false), |pressed| pressed.extract())?;
+    let is_pressed = |pressed: Bound<'_, PyAny>| {
+        let must = || PyTypeError::new_err(format!("{} must be True or False", at("pressed")));
+        pressed.extract().map_err(|_| must())
+    };
+    let pressed = get("pressed")?.map_or(Ok(false), is_pressed)?;
     Ok(if pressed { membrane.pressed() } else { membrane })
 }
 

@@ -349,6 +349,15 @@ impl Solution {
         PyArray1::from_vec(py, self.answer().y)
     }
 
+    /// It never changes.
+    fn __copy__(slf: Py<Self>) -> Py<Self> {
+        slf
+    }
+
+    fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
+        slf
+    }
+
     /// As a ``meshio.Mesh`` with the arrays of ``solution.vtu``.
     fn to_meshio<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         python(slf, "to_meshio", |_| Ok(()))
@@ -364,16 +373,16 @@ impl Solution {
     /// Parameters
     /// ----------
     /// field : str
-    ///     ``u1`` ..., ``gap``, ``action`` or ``contact``; of several gaps with the number, as in ``gap_1``.
+    ///     ``u1`` ..., ``gap``, ``action`` or ``contact``; of several gaps with the number, as in ``gap_1``. Default: the only gap, else ``u1``.
     /// ax : matplotlib.axes.Axes, optional
     ///
     /// Returns
     /// -------
     /// matplotlib.axes.Axes
-    #[pyo3(signature = (field="gap", ax=None))]
+    #[pyo3(signature = (field=None, ax=None))]
     fn plot<'py>(
         slf: &Bound<'py, Self>,
-        field: &str,
+        field: Option<&str>,
         ax: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         python(slf, "plot", |keywords| {

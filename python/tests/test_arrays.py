@@ -476,3 +476,20 @@ def test_a_view_that_a_backend_answers_with() -> None:
     gc.collect()
     assert same_bits(kept[0], q)
     assert pair_solved.solver == "backend"
+
+
+def test_masked_values_are_no_numbers() -> None:
+    values = np.ma.masked_less(np.arange(81.0), 3)
+    with pytest.raises(mc.DataError, match="masked") as caught:
+        mc.solve(mc.Mesh.rectangle(8), tension=(1, 3), load=(values, 0))
+    assert caught.value.key == "load[0]"
+    # Nothing is hidden here.
+    whole = np.ma.masked_less(np.full(81, -15.0), -20)
+    mc.solve(mc.Mesh.rectangle(8), tension=(1, 3), load=(whole, 0))
+
+
+def test_numbers_of_vertices_are_signed() -> None:
+    mesh = mc.Mesh.rectangle(2)
+    for numbers in mesh.triangles, mesh.curves["left"]:
+        assert (numbers - numbers.max() - 1).max() == -1
+    assert not mesh.triangles.flags.writeable

@@ -471,3 +471,22 @@ def test_the_example_of_the_package() -> None:
     failed, attempted = doctest.testmod(mc)
     assert attempted >= 3
     assert failed == 0
+
+
+# Copies, and what was taken silently once.
+
+
+def test_copies_are_the_same_object(solution: mc.Solution) -> None:
+    import copy
+
+    for original in solution, solution.mesh:
+        assert copy.copy(original) is original
+        assert copy.deepcopy([original])[0] is original
+
+
+@pytest.mark.parametrize("membranes", [1, 3])
+def test_stacks_are_drawn_without_a_name(membranes: int) -> None:
+    pytest.importorskip("matplotlib")
+    sheets = [mc.Membrane(tension=1, load=-1)] * membranes
+    axes = mc.solve(mc.Mesh.rectangle(4), membranes=sheets).plot()
+    assert axes.figure.axes[1].get_ylabel() == "u1"

@@ -65,10 +65,12 @@ def to_pyvista(solution: Solution) -> Any:
     return grid
 
 
-def plot(solution: Solution, *, field: str, ax: Any) -> Any:
+def plot(solution: Solution, *, field: str | None, ax: Any) -> Any:
     """A field of the solution, drawn with matplotlib; see `Solution.plot`."""
     import matplotlib.pyplot as plt
 
+    if field is None:
+        field = "gap" if len(solution.gaps) == 1 else "u1"
     values = _field(solution, field)
     if ax is None:
         _, ax = plt.subplots()
