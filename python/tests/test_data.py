@@ -672,3 +672,19 @@ def test_a_solution_has_one_gap_or_says_how_many() -> None:
     # Not -0.
     assert str(alone.contact_area) == "0.0"
     assert str(alone.total_force) == "0.0"
+
+
+def test_a_start_is_of_the_same_mesh_and_membranes() -> None:
+    coarse = mc.solve(mc.Mesh.rectangle(4), **PAIR)
+    with pytest.raises(mc.DataError, match="no solution on this mesh") as caught:
+        mc.solve(MESH, **PAIR, warm_start=coarse)
+    assert caught.value.key == "warm_start"
+    with pytest.raises(mc.DataError, match="no solution on this mesh"):
+        mc.solve(MESH, **STACK, warm_start=mc.solve(MESH, **PAIR))
+    again = mc.solve(MESH, **PAIR, warm_start=mc.solve(MESH, **PAIR))
+    assert again.residual <= 1e-8
+
+
+def test_there_is_an_iteration_at_least() -> None:
+    with pytest.raises(mc.DataError, match="max_iterations must be positive"):
+        mc.solve(MESH, **PAIR, max_iterations=0)
