@@ -1,9 +1,11 @@
 //! Data sampled inside triangles, as bounds of errors need them.
 
+use std::ops::Range;
+
 use super::error::StackError;
 use super::fields::{IntegrationRule, OnTriangles, pieces};
 use crate::mesh::{Mesh, ViewPlace};
-use crate::parallel::BLOCK;
+use crate::parallel::blocks_of;
 use crate::parallel::prelude::*;
 use crate::problem::{Field, Function};
 
@@ -43,6 +45,9 @@ pub(super) fn is_constant_on_triangles(mesh: &Mesh, field: &Field) -> bool {
     }
 }
 
+/// Triangles whose points are evaluated together.
+const BATCH: usize = 512;
+
 /// A field at the points of each triangle, as the triangle itself sees it. Shape: `triangles x 7`.
 pub(super) fn samples(mesh: &Mesh, field: &Field, datum: &str) -> Result<Vec<Samples>, StackError> {
     let mut samples = vec![[0.0; 7]; mesh.triangles().len()];
@@ -67,14 +72,19 @@ fn of_function(
     triangles: &[usize],
     datum: &str,
 ) -> Result<Vec<Samples>, StackError> {
-    let on_triangle = |&t: &usize| {
-        let corners = mesh.corners(t);
-        let [x, y] = [0, 1].map(|axis| at_samples(corners.map(|corner| corner[axis])));
-        let mut values = [0.0; 7];
-        function.eval_many(&x, &y, &mut values).map(|()| values)
+    let on_block = |block: Range<usize>| {
+        let at = |axis: usize| -> Vec<f64> {
+            let corners = triangles[block.clone()].iter().map(|&t| mesh.corners(t));
+            corners.flat_map(|corners| at_samples(corners.map(|corner| corner[axis]))).collect()
+        };
+        let (x, y) = (at(0), at(1));
+        let mut values = vec![0.0; x.len()];
+        function.eval_many(&x, &y, &mut values).map(|()| values.as_chunks().0.to_vec())
     };
     // Collected before errors are looked for, so that the first in the order of the triangles is named.
-    let found: Vec<_> = triangles.par_iter().with_min_len(BLOCK).map(on_triangle).collect();
-    let found: Result<Vec<Samples>, _> = found.into_iter().collect();
-    found.map_err(|source| StackError::Evaluation { datum: datum.into(), source })
+    let found: Vec<_> = blocks_of(BATCH, triangles.len()).into_par_iter().map(on_block).collect();
+    let found: Result<Vec<Vec<Samples>>, _> = found.into_iter().collect();
+    found
+        .map(|blocks| blocks.concat())
+        .map_err(|source| StackError::Evaluation { datum: datum.into(), source })
 }
