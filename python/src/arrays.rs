@@ -2,6 +2,7 @@
 #![allow(unsafe_code)]
 
 use numpy::ndarray::{ArrayView1, ArrayView2};
+use numpy::npyffi::NPY_ARRAY_WRITEABLE;
 use numpy::{Element, PyArray1, PyArray2, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::PyClass;
 use pyo3::prelude::*;
@@ -19,9 +20,11 @@ where
     let values = ArrayView1::from(slice(owner.get()));
     // SAFETY: The class is frozen, so the slice stays where it is and as it is for as long as the object lives, and the array keeps
     // the object alive. Nobody writes to it: it is made read-only before anyone else sees it.
-    let array = unsafe { PyArray1::borrow_from_array(&values, owner.as_any().clone()) };
-    array.readwrite().make_nonwriteable();
-    array
+    unsafe {
+        let array = PyArray1::borrow_from_array(&values, owner.as_any().clone());
+        (*array.as_array_ptr()).fields.flags &= !NPY_ARRAY_WRITEABLE;
+        array
+    }
 }
 
 /// The same of rows.
@@ -35,9 +38,11 @@ where
 {
     let rows = ArrayView2::from(rows(owner.get()));
     // SAFETY: as above.
-    let array = unsafe { PyArray2::borrow_from_array(&rows, owner.as_any().clone()) };
-    array.readwrite().make_nonwriteable();
-    array
+    unsafe {
+        let array = PyArray2::borrow_from_array(&rows, owner.as_any().clone());
+        (*array.as_array_ptr()).fields.flags &= !NPY_ARRAY_WRITEABLE;
+        array
+    }
 }
 
 /// Anything that numpy takes for a one-dimensional array of numbers.

@@ -85,9 +85,9 @@ impl Memory {
             SolverName::Auto | SolverName::Multigrid => "",
             _ => " or the solver multigrid",
         };
-        let all = grouped((vertices * work.membranes as f64).round() as usize);
+        let vertices = grouped(vertices.round() as usize);
         Err(Failure::Input(format!(
-            "{name}: about {all} vertices{of} need about {needed:.2} GiB of memory, and {available:.2} are available: take a coarser mesh{other}, or allow more with --memory-limit"
+            "{name}: about {vertices} vertices{of} need about {needed:.2} GiB of memory, and {available:.2} are available: take a coarser mesh{other}, or allow more with --memory-limit"
         )))
     }
 }
