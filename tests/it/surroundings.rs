@@ -134,6 +134,19 @@ fn a_hundred_killed_runs_leave_whole_files_and_go_on_to_the_same_bytes() {
 }
 
 #[test]
+fn a_table_that_a_killed_run_has_left_behind_is_written_again() {
+    let folder = folder_with_case(CASE);
+    let converge = "converge case.toml -q --levels 2 --no-picture";
+    run(folder.path(), converge).success();
+    let table = folder.path().join("out/case/convergence.md");
+    let whole = fs::read(&table).unwrap();
+    // As if it had been killed before the last level was in it.
+    fs::write(&table, &whole[..whole.len() / 2]).unwrap();
+    run(folder.path(), converge).success();
+    assert_eq!(fs::read(&table).unwrap(), whole);
+}
+
+#[test]
 fn what_is_torn_or_another_one_would_be_seen() {
     let folder = folder_with_case(CASE);
     for (arguments, _) in COMMANDS {

@@ -68,6 +68,10 @@ pub(crate) fn run(arguments: &ConvergeArguments, watch: &Watch) -> Result<(), Fa
     let folder = Folder::claim(&arguments.output.folder(&arguments.case.path), &claim, watch)?;
     let kept = Levels { folder: &folder, table: ERRORS, picture: RATES };
     let mut levels: Vec<LevelErrors> = kept.so_far();
+    if !levels.is_empty() {
+        // The last run may have been killed before it wrote the last level here, too.
+        write_table(&folder, &levels)?;
+    }
     levels.truncate(arguments.levels);
 
     let title = setup.case.title.clone();
@@ -211,11 +215,16 @@ fn add_levels(
         }
         if level >= known {
             kept.write(levels)?;
-            kept.folder.write(ERRORS_TABLE, |out| out.write_all(markdown(levels).as_bytes()))?;
+            write_table(kept.folder, levels)?;
         }
         progress.step();
     }
     Ok(None)
+}
+
+/// The errors with their rates, as a file.
+fn write_table(folder: &Folder, levels: &[LevelErrors]) -> Result<(), Failure> {
+    folder.write(ERRORS_TABLE, |out| out.write_all(markdown(levels).as_bytes()))
 }
 
 /// The errors against the mesh size, if there is time. What was left out is returned.
