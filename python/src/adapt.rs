@@ -3,7 +3,7 @@
 use std::ffi::CString;
 use std::sync::Arc;
 
-use membrane_contact::mesh::MeshError;
+use membrane_contact::mesh::{self, MeshError};
 use membrane_contact::qp::TimeLimit;
 use membrane_contact::solver::SolverOptions;
 use membrane_contact::study::{AdaptiveLevel, AdaptiveStudy, StudyError};
@@ -131,7 +131,7 @@ pub(crate) fn adapt<'py>(
     }
     let (found, bound) = (found.clone(), bound.clone());
     let d = Arc::clone(study.discretization().expect("a level has been solved"));
-    let mesh = Py::new(py, Mesh::adapted(Arc::clone(study.mesh()), domain))?;
+    let mesh = Py::new(py, Mesh::over(mesh::Mesh::clone(study.mesh()), domain))?;
     Ok(Solution::new(mesh, d, found, Some(Ok(bound)), certified_within))
 }
 

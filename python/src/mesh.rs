@@ -45,13 +45,13 @@ pub(crate) struct Mesh {
 }
 
 impl Mesh {
-    fn of_domain(mesh: mesh::Mesh, domain: Domain) -> Self {
-        let family = MeshFamily::of_domain(mesh, &domain);
-        Self { family, domain: Some(domain), kind: OnceLock::new(), notes: Vec::new() }
-    }
-
-    fn polygonal(mesh: mesh::Mesh) -> Self {
-        Self { family: MeshFamily::polygonal(mesh), domain: None, kind: OnceLock::new(), notes: Vec::new() }
+    /// A mesh that stands for a domain, or for the polygon that it covers.
+    pub(crate) fn over(mesh: mesh::Mesh, domain: Option<Domain>) -> Self {
+        let family = match &domain {
+            Some(domain) => MeshFamily::of_domain(mesh, domain),
+            None => MeshFamily::polygonal(mesh),
+        };
+        Self { family, domain, kind: OnceLock::new(), notes: Vec::new() }
     }
 
     pub(crate) fn core(&self) -> &Arc<mesh::Mesh> {
@@ -62,17 +62,8 @@ impl Mesh {
         self.domain.as_ref()
     }
 
-    /// A mesh that has been refined where it was needed.
-    pub(crate) fn adapted(mesh: Arc<mesh::Mesh>, domain: Option<Domain>) -> Self {
-        let mesh = Arc::unwrap_or_clone(mesh);
-        match domain {
-            Some(domain) => Self::of_domain(mesh, domain),
-            None => Self::polygonal(mesh),
-        }
-    }
-
     fn generated(py: Python<'_>, domain: Domain, size: MeshSize) -> PyResult<Self> {
-        let made = wait_for(py, move || generate(&domain, size).map(|mesh| Self::of_domain(mesh, domain)))?;
+        let made = wait_for(py, move || generate(&domain, size).map(|mesh| Self::over(mesh, Some(domain))))?;
         made.map_err(value_error)
     }
 
@@ -84,10 +75,7 @@ impl Mesh {
     ) -> PyResult<Self> {
         let mesh = mesh::Mesh::clone(self.core());
         let mesh = wait_for(py, move || rename(mesh))?.map_err(value_error)?;
-        Ok(match &self.domain {
-            Some(domain) => Self::of_domain(mesh, domain.clone()),
-            None => Self::polygonal(mesh),
-        })
+        Ok(Self::over(mesh, self.domain.clone()))
     }
 }
 
@@ -132,9 +120,9 @@ impl Mesh {
             return Err(negative_vertex(py, t, a));
         }
         let triangles = triangles.into_iter().map(|corners| corners.map(|a| a as usize)).collect();
-        let mesh =
-            py.detach(|| mesh::Mesh::new(points, triangles)).map_err(|error| mesh_error(py, &error))?;
-        Ok(Self::polygonal(mesh))
+        let mesh = wait_for(py, || mesh::Mesh::new(points, triangles))?;
+        let mesh = mesh.map_err(|error| mesh_error(py, &error))?;
+        Ok(Self::over(mesh, None))
     }
 
     /// The mesh of another package.
@@ -174,7 +162,7 @@ impl Mesh {
                 error => value_error(format!("{}: {error}", path.display())),
             })?;
         let notes = read.notes.iter().map(ToString::to_string).collect();
-        Ok(Self { notes, ..Self::polygonal(read.mesh) })
+        Ok(Self { notes, ..Self::over(read.mesh, None) })
     }
 
     /// A rectangle of ``nx`` by ``ny`` cells, with the curves ``left``, ``right``, ``bottom`` and ``top``.

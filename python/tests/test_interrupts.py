@@ -269,7 +269,7 @@ FORKED = {
     "qp": "mc.qp(mesh, **PAIR)",
     "make a mesh": "mc.Mesh.rectangle(64)",
     "make an unstructured mesh": "mc.Mesh.polygon([[0, 0], [1, 0], [0, 1]], size=0.1)",
-    "read a mesh": "mc.Mesh(mesh.points, mesh.triangles)",
+    "read a mesh": "mc.Mesh(fine.points, fine.triangles)",
     "refine": "mesh.refined()",
     "name a region": "mesh.with_region('a', lambda x, y: x < 0.5)",
     "solve with a backend": "mc.solve(mesh, **PAIR, solver=lambda P, q, A, b, **_: (0 * q, 0 * b))",
