@@ -1,9 +1,9 @@
 //! Arrays from and to numpy: read-only views of what our objects keep, never copies; copies of what others give.
 #![allow(unsafe_code)]
 
-use numpy::ndarray::{ArrayView1, ArrayView2};
+use numpy::ndarray::{ArrayView, ArrayView1, ArrayView2, Dimension};
 use numpy::npyffi::NPY_ARRAY_WRITEABLE;
-use numpy::{Element, PyArray1, PyArray2, PyArrayMethods, PyUntypedArrayMethods};
+use numpy::{Element, PyArray, PyArray1, PyArray2, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::PyClass;
 use pyo3::prelude::*;
 use pyo3::pyclass::boolean_struct::True;
@@ -17,14 +17,7 @@ where
     C: PyClass<Frozen = True> + Sync,
     T: Element,
 {
-    let values = ArrayView1::from(slice(owner.get()));
-    // SAFETY: The class is frozen, so the slice stays where it is and as it is for as long as the object lives, and the array keeps
-    // the object alive. Nobody writes to it: it is made read-only before anyone else sees it.
-    unsafe {
-        let array = PyArray1::borrow_from_array(&values, owner.as_any().clone());
-        (*array.as_array_ptr()).fields.flags &= !NPY_ARRAY_WRITEABLE;
-        array
-    }
+    read_only(owner, ArrayView1::from(slice(owner.get())))
 }
 
 /// The same of rows.
@@ -36,10 +29,20 @@ where
     C: PyClass<Frozen = True> + Sync,
     T: Element,
 {
-    let rows = ArrayView2::from(rows(owner.get()));
-    // SAFETY: as above.
+    read_only(owner, ArrayView2::from(rows(owner.get())))
+}
+
+/// The values, which are in the owner, as an array that keeps it alive.
+fn read_only<'py, C, T, D>(owner: &Bound<'py, C>, values: ArrayView<'_, T, D>) -> Bound<'py, PyArray<T, D>>
+where
+    C: PyClass<Frozen = True> + Sync,
+    T: Element,
+    D: Dimension,
+{
+    // SAFETY: The class is frozen, so what it keeps stays where it is and as it is for as long as the object lives, and the array keeps
+    // the object alive. Nobody writes to it: it is made read-only before anyone else sees it.
     unsafe {
-        let array = PyArray2::borrow_from_array(&rows, owner.as_any().clone());
+        let array = PyArray::borrow_from_array(&values, owner.as_any().clone());
         (*array.as_array_ptr()).fields.flags &= !NPY_ARRAY_WRITEABLE;
         array
     }

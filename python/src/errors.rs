@@ -34,25 +34,23 @@ create_exception!(
 
 /// A datum `key` is wrong.
 pub(crate) fn data_error(py: Python<'_>, key: &str, problem: impl Display) -> PyErr {
-    with_attributes(py, DataError::new_err(format!("{key} {problem}")), |error| {
-        error.setattr("key", key)?;
-        error.setattr("vertex", py.None())
-    })
+    data_error_at(py, format!("{key} {problem}"), Some(key), None)
 }
 
 /// The data make no problem.
 pub(crate) fn problem_error(py: Python<'_>, error: &ProblemError) -> PyErr {
-    with_attributes(py, DataError::new_err(error.to_string()), |raised| {
-        raised.setattr("key", py.None())?;
-        raised.setattr("vertex", py.None())
-    })
+    data_error_at(py, error.to_string(), None, None)
 }
 
 /// The data do not go together, or not with the mesh.
 pub(crate) fn discretization_error(py: Python<'_>, error: &DiscretizationError) -> PyErr {
-    with_attributes(py, DataError::new_err(error.to_string()), |raised| {
-        raised.setattr("key", py.None())?;
-        raised.setattr("vertex", error.vertex())
+    data_error_at(py, error.to_string(), None, error.vertex())
+}
+
+fn data_error_at(py: Python<'_>, message: String, key: Option<&str>, vertex: Option<usize>) -> PyErr {
+    with_attributes(py, DataError::new_err(message), |raised| {
+        raised.setattr("key", key)?;
+        raised.setattr("vertex", vertex)
     })
 }
 

@@ -8,7 +8,7 @@ use membrane_contact::estimate::{ErrorBound, NoBound};
 use membrane_contact::qp::Answer;
 use membrane_contact::solver::StartingPoint;
 use numpy::{PyArray1, PyArrayMethods};
-use pyo3::exceptions::{PyAttributeError, PyIndexError};
+use pyo3::exceptions::PyAttributeError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
@@ -47,10 +47,7 @@ impl Solution {
     }
 
     fn gap_count(&self) -> usize {
-        match &self.solution {
-            ContactSolution::Pair(_) => 1,
-            ContactSolution::Stack(solution) => solution.gaps().len(),
-        }
+        self.solution.gaps().len()
     }
 
     /// The index of the only gap.
@@ -65,17 +62,11 @@ impl Solution {
     }
 
     fn action_values(&self, index: usize) -> &[f64] {
-        match &self.solution {
-            ContactSolution::Pair(solution) => solution.lambda(),
-            ContactSolution::Stack(solution) => &solution.gaps()[index].lambda,
-        }
+        self.solution.gaps()[index].lambda
     }
 
     fn contact_flags(&self, index: usize) -> &[bool] {
-        match &self.solution {
-            ContactSolution::Pair(solution) => solution.contact(),
-            ContactSolution::Stack(solution) => &solution.gaps()[index].contact,
-        }
+        self.solution.gaps()[index].contact
     }
 
     fn error_bound_or_reason(&self) -> Result<&ErrorBound, String> {
@@ -525,12 +516,8 @@ impl Gap {
         self.solution.get().solution.gaps()[self.index].total_force
     }
 
-    fn __repr__(&self) -> PyResult<String> {
-        let gaps = self.solution.get().solution.gaps();
-        let gap = gaps.get(self.index).ok_or_else(|| PyIndexError::new_err("no such gap"))?;
-        Ok(format!(
-            "<Gap {}: contact area {:.6}, force {:.6}>",
-            gap.number, gap.contact_area, gap.total_force
-        ))
+    fn __repr__(&self) -> String {
+        let gap = &self.solution.get().solution.gaps()[self.index];
+        format!("<Gap {}: contact area {:.6}, force {:.6}>", gap.number, gap.contact_area, gap.total_force)
     }
 }

@@ -7,9 +7,7 @@ use membrane_contact::discretization::Discretization;
 use membrane_contact::estimate::{ErrorBound, NoBound};
 use membrane_contact::problem::{ContactProblem, Domain};
 use membrane_contact::qp::{Clarabel, TimeLimit};
-use membrane_contact::solver::{
-    ActiveSet, Auto, ContactSolver, Multigrid, QpSolver, SolverOptions, StartingPoint,
-};
+use membrane_contact::solver::{ActiveSet, Auto, ContactSolver, Multigrid, QpSolver, SolverOptions};
 use membrane_contact::study::{AccuracyError, Bounded, Tolerance, solve_bounded};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -119,7 +117,7 @@ pub(crate) fn solve<'py>(
     let posed = Arc::clone(&problem);
     let d = caller.wait_for(py, move || Discretization::by_rule(&posed, core, rule))?;
     let d = d.map_err(|error| discretization_error(py, &error))?;
-    if options.warm_start.as_ref().is_some_and(|start| !fits(start, &d)) {
+    if options.warm_start.as_ref().is_some_and(|start| !start.fits(&d)) {
         let problem = "is no solution on this mesh with these membranes, supports and obstacles";
         return Err(data_error(py, "warm_start", problem));
     }
@@ -131,17 +129,6 @@ pub(crate) fn solve<'py>(
     let (d, found) = caller.wait_for(py, work)?;
     let found = found.map_err(|error| accuracy_error(py, &error))?;
     Ok(Solution::new(mesh.clone().unbind(), Arc::new(d), found.solution, found.bound, found.tolerance))
-}
-
-/// Whether a guess has the lengths of the discrete problem.
-fn fits(start: &StartingPoint, d: &Discretization) -> bool {
-    let (membranes, rows) = match d {
-        Discretization::Pair(d) => (2, d.interior().len()),
-        Discretization::Stack(d) => (d.membranes(), d.rows().len()),
-    };
-    let vertices = d.mesh().points().len();
-    let StartingPoint { displacement, multiplier } = start;
-    displacement.len() == membranes && displacement[0].len() == vertices && multiplier.len() == rows
 }
 
 /// A number, or `"auto"`.

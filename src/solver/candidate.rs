@@ -74,8 +74,16 @@ impl From<Candidate> for StartingPoint {
 }
 
 impl StartingPoint {
-    /// Whether it has the lengths of this discretization.
-    pub(crate) fn fits(&self, d: &PairDiscretization) -> bool {
+    /// Whether it has the lengths of this discretization; solvers leave out one that has not.
+    pub fn fits(&self, d: &Discretization) -> bool {
+        match d {
+            Discretization::Pair(d) => self.fits_pair(d),
+            Discretization::Stack(d) => self.fits_stack(d),
+        }
+    }
+
+    /// Likewise.
+    pub(crate) fn fits_pair(&self, d: &PairDiscretization) -> bool {
         self.has_lengths(2, d.mesh().points().len(), d.interior().len())
     }
 

@@ -66,7 +66,7 @@ impl ContactSolver for QpSolver {
         options.check()?;
         let start = Instant::now();
         let qp = contact_qp(d);
-        let guess = options.warm_start.as_ref().filter(|guess| guess.fits(d));
+        let guess = options.warm_start.as_ref().filter(|guess| guess.fits_pair(d));
         let warm_start =
             guess.map(|guess| (pair::unknowns(d, &guess.displacement), guess.multiplier.clone()));
         let (answer, statistics) = self.answer(&qp, options, warm_start, start)?;

@@ -31,7 +31,7 @@ pub(in crate::solver) fn solve(
     let start = Instant::now();
     let limits = options.limits(MAX_STEPS, start);
     let (active, mut level_iterations) = match &options.warm_start {
-        Some(start) if start.fits(d) => (guess(d, &start.displacement, &start.multiplier), Vec::new()),
+        Some(start) if start.fits_pair(d) => (guess(d, &start.displacement, &start.multiplier), Vec::new()),
         _ => nested::guess_from_coarser_levels(d, &limits)?,
     };
     let setup_seconds = start.elapsed().as_secs_f64();

@@ -51,7 +51,7 @@ fn halves(
     options: &SolverOptions,
 ) -> [HalfProblem; 2] {
     let force = SHARE * options.tolerance * d.scales().force_density;
-    let start = options.warm_start.as_ref().filter(|start| start.fits(d));
+    let start = options.warm_start.as_ref().filter(|start| start.fits_pair(d));
     let [mu1, mu2] = d.tension();
     let guess = |combine: &(dyn Fn(&StartingPoint, usize) -> f64 + Sync)| {
         start.map(|start| levels.to_rows(|a| combine(start, a)))
